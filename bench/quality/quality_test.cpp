@@ -9,8 +9,8 @@
 #include "builder/builder.h"
 #include "judge/metrics/cut_judge.h"
 #include "judge/metrics/cut_search.h"
+#include "lab/samples/samples.h"
 #include "reference.h"
-#include "scene/samples/samples.h"
 
 namespace meshlode::bench {
 namespace {
@@ -28,7 +28,7 @@ struct Sample {
 };
 
 Sample make_sample() {
-  scene::Scene scene = scene::as_scene(scene::as_mesh(scene::make_torus(130, 66)));
+  scene::Scene scene = lab::as_scene(lab::as_mesh(lab::make_torus(130, 66)));
   for (Vec3d& p : scene.meshes[0].primitives[0].positions) p += 0.01 * glm::sin(p * 17.0);  // not too smooth
   const scene::Primitive& primitive = scene.meshes[0].primitives[0];
   judge::Surface source{primitive.positions, {}};
@@ -104,7 +104,7 @@ TEST(QualityBench, FindsTheFewestTrianglesOverAllCuts) {
 }
 
 TEST(QualityBench, TheReferenceSimplifiesAndSaysWhatItLeftOut) {
-  const scene::Primitive shape = scene::make_torus(60, 30);
+  const scene::Primitive shape = lab::make_torus(60, 30);
   judge::Surface source{shape.positions, {}};
   for (std::size_t i = 0; i < shape.indices.size(); i += 3) {
     source.triangles.push_back({shape.indices[i], shape.indices[i + 1], shape.indices[i + 2]});

@@ -7,7 +7,7 @@
 
 #include <meshlode/build.h>
 
-#include "scene/samples/samples.h"
+#include "lab/samples/samples.h"
 
 namespace meshlode::test {
 

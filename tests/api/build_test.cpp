@@ -22,7 +22,7 @@ using test::Arrays;
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 Arrays sphere(std::uint32_t n = 24) {
-  return Arrays(scene::with_smooth_normals(scene::make_sphere(n)));
+  return Arrays(lab::with_smooth_normals(lab::make_sphere(n)));
 }
 
 void expect_refused(const Result<std::vector<std::uint8_t>>& result, ErrorCode code, const std::string& place) {
@@ -190,7 +190,7 @@ TEST(ApiBuild, WhatCannotBeDoneIsSaidBeforeItIsTried) {
 }
 
 TEST(ApiBuild, BudgetsBoundWhatIsStored) {
-  const Arrays arrays(scene::make_rock(12));
+  const Arrays arrays(lab::make_rock(12));
   BuildOptions options;
   options.error_tier = format::ErrorTier::kQem;
   options.attributes = AttributeChoice::kAll;
@@ -215,7 +215,7 @@ TEST(ApiBuild, BudgetsBoundWhatIsStored) {
 }
 
 TEST(ApiBuild, AttributesAreThoseOfTheChoice) {
-  const Arrays arrays(scene::make_rock(12));
+  const Arrays arrays(lab::make_rock(12));
   PrimitiveInput primitive = arrays.primitive();
   primitive.material = 0;
   MeshInput mesh;
@@ -394,7 +394,7 @@ TEST(ApiBuild, AThrowingCallbackIsAnError) {
 // METIS draws from the C library's rand(): builds at the same time must not disturb each other (I10).
 TEST(ApiBuild, BuildsAtTheSameTimeGiveTheBytesOfBuildsOneAfterTheOther) {
   const Arrays a = sphere(48);
-  const Arrays b(scene::make_torus(96, 40));
+  const Arrays b(lab::make_torus(96, 40));
   const auto a_alone = test::build_one(a.primitive());
   const auto b_alone = test::build_one(b.primitive());
   ASSERT_TRUE(a_alone.ok() && b_alone.ok());

@@ -27,7 +27,7 @@ const std::vector<std::uint8_t>& sphere_bytes(format::Codec codec) {
   static std::map<format::Codec, std::vector<std::uint8_t>> made;
   std::vector<std::uint8_t>& bytes = made[codec];
   if (bytes.empty()) {
-    const Arrays arrays(scene::with_smooth_normals(scene::make_sphere(48)));
+    const Arrays arrays(lab::with_smooth_normals(lab::make_sphere(48)));
     std::vector<float> colors;
     for (const float c : arrays.positions) {
       colors.push_back(0.5F + 0.25F * c);
@@ -284,7 +284,7 @@ TEST_P(CApi, AnAssetWithoutPromisesKeepsThatOfPositions) {
 }
 
 TEST(CApiPromise, CutsAreMadeByTheChosenErrors) {
-  const Arrays arrays(scene::with_smooth_normals(scene::make_sphere(48)));
+  const Arrays arrays(lab::with_smooth_normals(lab::make_sphere(48)));
   BuildOptions options;
   options.promise = format::Promise::kAppearance;
   const auto bytes = test::build_one(arrays.primitive(), options);

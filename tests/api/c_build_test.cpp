@@ -66,7 +66,7 @@ Bytes build_in_c(const CScene& scene, const meshlode_build_options* options) {
 }
 
 Arrays sphere() {
-  return Arrays(scene::with_smooth_normals(scene::make_sphere(24)));
+  return Arrays(lab::with_smooth_normals(lab::make_sphere(24)));
 }
 
 TEST(CBuild, TheSameBytesAsInCpp) {

@@ -25,7 +25,7 @@ const std::vector<std::uint8_t>& sphere_bytes(format::Codec codec = format::Code
   static std::map<format::Codec, std::vector<std::uint8_t>> made;
   std::vector<std::uint8_t>& bytes = made[codec];
   if (bytes.empty()) {
-    const Arrays arrays(scene::with_smooth_normals(scene::make_sphere(40)));
+    const Arrays arrays(lab::with_smooth_normals(lab::make_sphere(40)));
     BuildOptions options;
     options.codec = codec;
     auto built = test::build_one(arrays.primitive(), options);

@@ -17,9 +17,9 @@
 #include "builder/builder.h"
 #include "judge/validate/validate.h"
 #include "judge/verify/verify.h"
+#include "lab/samples/samples.h"
 #include "odd_shapes.h"
 #include "run/read/asset.h"
-#include "scene/samples/samples.h"
 
 namespace meshlode::builder {
 namespace {
@@ -36,7 +36,7 @@ struct HardCase {
 };
 
 scene::Scene alone(scene::Primitive shape) {
-  return scene::as_scene(scene::as_mesh(std::move(shape)));
+  return lab::as_scene(lab::as_mesh(std::move(shape)));
 }
 
 /// Fails for findings, at most five in words.
@@ -97,7 +97,7 @@ TEST_P(HardCases, BuildsValidatesAndVerifies) {
 }
 
 scene::Scene mirrored_instances() {
-  scene::Scene scene = alone(scene::with_smooth_normals(scene::make_torus(48, 24)));
+  scene::Scene scene = alone(lab::with_smooth_normals(lab::make_torus(48, 24)));
   for (int axes = 0; axes < 8; ++axes) {
     scene::SceneInstance instance = scene.instances.at(0);
     for (int a = 0; a < 3; ++a) instance.transform[a][a] = (axes >> a & 1) != 0 ? -1.0 - a : 1.0;
@@ -112,7 +112,7 @@ scene::Scene mirrored_instances() {
 
 /// A rock with needles along its edges: an edge long and far narrower than a cell of the grid.
 scene::Scene rock_with_needles() {
-  scene::Primitive shape = scene::make_rock(16);
+  scene::Primitive shape = lab::make_rock(16);
   const std::size_t triangles = shape.indices.size() / 3;
   for (std::size_t t = 0; t < triangles; t += 3) {
     const std::uint32_t a = shape.indices[3 * t];
@@ -127,8 +127,8 @@ scene::Scene rock_with_needles() {
 }
 
 scene::Scene two_scales() {
-  scene::Scene scene = alone(scene::scaled(scene::make_sphere(12), 1e-6));
-  scene.meshes.push_back(scene::as_mesh(scene::scaled(scene::make_sphere(12), 1e9), "huge"));
+  scene::Scene scene = alone(lab::scaled(lab::make_sphere(12), 1e-6));
+  scene.meshes.push_back(lab::as_mesh(lab::scaled(lab::make_sphere(12), 1e9), "huge"));
   scene::SceneInstance instance = scene.instances.at(0);
   instance.mesh = MeshId(1U);
   scene.instances.push_back(instance);
@@ -136,9 +136,9 @@ scene::Scene two_scales() {
 }
 
 scene::Scene empty_mesh_among_others() {
-  scene::Scene scene = alone(scene::make_sphere(8));
+  scene::Scene scene = alone(lab::make_sphere(8));
   scene.meshes.emplace_back().name = "empty";
-  scene.meshes.push_back(scene::as_mesh(scene::make_cube(3), "cube"));
+  scene.meshes.push_back(lab::as_mesh(lab::make_cube(3), "cube"));
   for (std::uint32_t m = 1; m < 3; ++m) {
     scene::SceneInstance instance = scene.instances.at(0);
     instance.mesh = MeshId(m);
@@ -148,7 +148,7 @@ scene::Scene empty_mesh_among_others() {
 }
 
 scene::Scene empty_primitive() {
-  scene::Scene scene = alone(scene::make_sphere(8));
+  scene::Scene scene = alone(lab::make_sphere(8));
   scene::Primitive empty;
   empty.material = MaterialId(0U);
   scene.meshes[0].primitives.insert(scene.meshes[0].primitives.begin(), empty);
@@ -156,15 +156,15 @@ scene::Scene empty_primitive() {
 }
 
 const HardCase kCases[] = {
-    {"Sphere", [] { return alone(scene::make_sphere(24)); }},
-    {"FarPlane", [] { return alone(scene::make_far_plane(40)); }},
-    {"Tiny", [] { return alone(scene::scaled(scene::make_rock(16), 1e-6)); }},
-    {"Huge", [] { return alone(scene::scaled(scene::make_rock(16), 1e9)); }},
-    {"LargerThanFloatsSquare", [] { return alone(scene::scaled(scene::make_sphere(16), 1e25)); }},
+    {"Sphere", [] { return alone(lab::make_sphere(24)); }},
+    {"FarPlane", [] { return alone(lab::make_far_plane(40)); }},
+    {"Tiny", [] { return alone(lab::scaled(lab::make_rock(16), 1e-6)); }},
+    {"Huge", [] { return alone(lab::scaled(lab::make_rock(16), 1e9)); }},
+    {"LargerThanFloatsSquare", [] { return alone(lab::scaled(lab::make_sphere(16), 1e25)); }},
     {"TinyAndHugeTogether", two_scales},
-    {"ZeroAreas", [] { return alone(scene::make_zero_areas(16)); }},
-    {"Duplicates", [] { return alone(scene::make_duplicates(16)); }},
-    {"Slivers", [] { return alone(scene::make_slivers(3000)); }},
+    {"ZeroAreas", [] { return alone(lab::make_zero_areas(16)); }},
+    {"Duplicates", [] { return alone(lab::make_duplicates(16)); }},
+    {"Slivers", [] { return alone(lab::make_slivers(3000)); }},
     {"Needles", rock_with_needles},
     {"FineRingsBesideAPatch", [] { return alone(test::make_fine_rings_beside_a_patch(3)); }},
     {"FineRingsCertified", [] { return alone(test::make_fine_rings_beside_a_patch(4)); },
@@ -172,15 +172,15 @@ const HardCase kCases[] = {
     {"BallWithHairs", [] { return alone(test::make_ball_with_hairs()); }},
     {"BallWithHairsCertified", [] { return alone(test::make_ball_with_hairs()); }, format::ErrorTier::kCertified},
     {"CubeWithTJunctions", [] { return alone(test::make_cube_with_t_junctions()); }},
-    {"SplitNormals", [] { return alone(scene::with_split_normals(scene::make_rock(16))); }},
-    {"Crystal", [] { return alone(scene::make_crystal(5, 12)); }},
-    {"ThreeSheets", [] { return alone(scene::make_three_sheets(24)); }},
-    {"DoubleCone", [] { return alone(scene::make_double_cone(400)); }},
-    {"Moebius", [] { return alone(scene::make_moebius(200, 8)); }},
-    {"Blade", [] { return alone(scene::make_blade(24)); }},
-    {"BoxSoup", [] { return alone(scene::make_box_soup(300)); }},
-    {"ThousandLoosePieces", [] { return alone(scene::make_loose_pieces(1000)); }},
-    {"Foliage", [] { return alone(scene::make_foliage(1500)); }},
+    {"SplitNormals", [] { return alone(lab::with_split_normals(lab::make_rock(16))); }},
+    {"Crystal", [] { return alone(lab::make_crystal(5, 12)); }},
+    {"ThreeSheets", [] { return alone(lab::make_three_sheets(24)); }},
+    {"DoubleCone", [] { return alone(lab::make_double_cone(400)); }},
+    {"Moebius", [] { return alone(lab::make_moebius(200, 8)); }},
+    {"Blade", [] { return alone(lab::make_blade(24)); }},
+    {"BoxSoup", [] { return alone(lab::make_box_soup(300)); }},
+    {"ThousandLoosePieces", [] { return alone(lab::make_loose_pieces(1000)); }},
+    {"Foliage", [] { return alone(lab::make_foliage(1500)); }},
     {"Fan10000", [] { return alone(test::make_fan(10000)); }},
     {"Triangle", [] { return alone(test::make_triangle()); }},
     {"Identical", [] { return alone(test::make_identical(3000)); }},
@@ -189,7 +189,7 @@ const HardCase kCases[] = {
     {"CoincidentSpheres", [] { return alone(test::make_coincident_spheres(12, 4)); }},
     {"LineOfTriangles", [] { return alone(test::make_line_of_triangles(500)); }},
     {"Cards", [] { return alone(test::make_cards(12000, 2)); }},
-    {"OpenTerrain", [] { return alone(scene::make_terrain(96, 96)); }},
+    {"OpenTerrain", [] { return alone(lab::make_terrain(96, 96)); }},
     {"LatticeChaos", [] { return alone(test::make_lattice_chaos(1500, 6, 5)); }},
     {"LatticeChaosSparse", [] { return alone(test::make_lattice_chaos(1000, 12, 6)); }},
     {"MirroredInstances", mirrored_instances},
@@ -219,7 +219,7 @@ TEST(HardNumbers, AChangedNeedleIsFoundHoweverManyShareItsCell) {
   ASSERT_TRUE(rules_broken(*asset, alone(shape)).empty());
   const format::MeshRecord& mesh = asset->meshes()[0];
   const double step = std::ldexp(mesh.grid.mantissa, mesh.grid.log2);
-  const std::size_t first_ring = scene::make_plane(12).positions.size();
+  const std::size_t first_ring = lab::make_plane(12).positions.size();
   SplitMix64 random(6);
   for (int round = 0; round < 40; ++round) {
     scene::Primitive moved = shape;
@@ -240,7 +240,7 @@ TEST(HardNumbers, AChangedNeedleIsFoundHoweverManyShareItsCell) {
 TEST(HardNumbers, HairsWithoutAreaAreCountedAndNothingElseChanges) {
   const scene::Primitive shape = test::make_ball_with_hairs();
   scene::Primitive ball = shape;
-  ball.indices.resize(scene::make_sphere(16).indices.size());
+  ball.indices.resize(lab::make_sphere(16).indices.size());
   const auto bytes = prove(alone(shape)), ball_bytes = prove(alone(ball));
   const auto asset = run::Asset::from_bytes(bytes), ball_asset = run::Asset::from_bytes(ball_bytes);
   ASSERT_TRUE(asset.ok() && ball_asset.ok());
@@ -270,7 +270,7 @@ TEST(HardNumbers, AllIdenticalTrianglesAreOneTriangleAndTheRestIsCounted) {
 // Spheres and errors are stored as floats: what they cannot hold is refused, not rounded to zero.
 TEST(HardNumbers, AMeshSmallerThanFloatsIsRefusedWithALine) {
   PipelineReport report;
-  const auto bytes = build_lode(alone(scene::scaled(scene::make_sphere(16), 1e-40)), {}, {}, report);
+  const auto bytes = build_lode(alone(lab::scaled(lab::make_sphere(16), 1e-40)), {}, {}, report);
   ASSERT_FALSE(bytes.ok());
   EXPECT_EQ(bytes.error().code, ErrorCode::kUnsupported) << bytes.error().message();
 }
@@ -278,9 +278,9 @@ TEST(HardNumbers, AMeshSmallerThanFloatsIsRefusedWithALine) {
 TEST(HardNumbers, AGivenGridKeepsAbuttingPiecesTogetherAtTheHardCasesToo) {
   PipelineOptions options;
   options.grid_step = 0.01;
-  prove(alone(scene::make_rock(12)), options);
+  prove(alone(lab::make_rock(12)), options);
   options.grid_step = 0.5;  // so coarse that most of a sphere's triangles collapse; they stay, counted (I1)
-  const auto bytes = prove(alone(scene::make_sphere(16)), options);
+  const auto bytes = prove(alone(lab::make_sphere(16)), options);
   const auto asset = run::Asset::from_bytes(bytes);
   ASSERT_TRUE(asset.ok());
   EXPECT_GT(asset->meshes()[0].grid_collapsed, 0U);
@@ -289,7 +289,7 @@ TEST(HardNumbers, AGivenGridKeepsAbuttingPiecesTogetherAtTheHardCasesToo) {
 TEST(HardNumbers, ABuildSaysWhereHalfOfItsFinestTrianglesHaveNoArea) {
   // One vertex far away makes the grid coarse for all that is near.
   const auto losses_at = [](double distance) {
-    scene::Primitive shape = scene::make_sphere(6);
+    scene::Primitive shape = lab::make_sphere(6);
     shape.positions[0] = {distance, 0.0, 0.0};
     PipelineReport report;
     const auto bytes = build_lode(alone(std::move(shape)), {}, {}, report);

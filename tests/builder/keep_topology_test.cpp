@@ -19,8 +19,8 @@
 #include "builder/plan/plan.h"
 #include "builder/prepare/prepare.h"
 #include "builder/stage_options.h"
+#include "lab/samples/samples.h"
 #include "scene/import/import.h"
-#include "scene/samples/samples.h"
 #include "support/open_surface.h"
 #include "support/random.h"
 
@@ -219,7 +219,7 @@ scene::SourceMesh tube(const Curve& curve, std::uint32_t along, std::uint32_t ar
       for (const std::uint32_t v : {a, c, b, b, c, d}) shape.indices.push_back(v);
     }
   }
-  return scene::as_mesh(std::move(shape));
+  return lab::as_mesh(std::move(shape));
 }
 
 scene::SourceMesh trefoil(std::uint32_t along, std::uint32_t around, double radius) {
@@ -271,12 +271,12 @@ scene::SourceMesh sponge(int n, int pitch, double bend) {
       }
     }
   }
-  return scene::as_mesh(std::move(shape));
+  return lab::as_mesh(std::move(shape));
 }
 
 /// Two closed sheets `gap` apart, of which each is `thickness` thin.
 scene::SourceMesh two_blades(std::uint32_t n, double thickness, double gap) {
-  scene::Primitive both = scene::make_blade(n, thickness);
+  scene::Primitive both = lab::make_blade(n, thickness);
   const auto count = static_cast<std::uint32_t>(both.positions.size());
   const std::vector<std::uint32_t> indices = both.indices;
   for (std::uint32_t v = 0; v < count; ++v) {
@@ -284,7 +284,7 @@ scene::SourceMesh two_blades(std::uint32_t n, double thickness, double gap) {
     both.positions.push_back(p + Vec3d(0.013, 1.0, 0.007) * gap);
   }
   for (const std::uint32_t v : indices) both.indices.push_back(v + count);
-  return scene::as_mesh(std::move(both));
+  return lab::as_mesh(std::move(both));
 }
 
 /// A closed shell of `n` x `n` cells, rough as whole numbers, whose two sides are one apart everywhere: what moves on
@@ -313,30 +313,30 @@ scene::SourceMesh rough_shell(int n, std::uint64_t seed) {
     add_quad(id(i + 1, n, 0), id(i, n, 0), id(i, n, 1), id(i + 1, n, 1));
     add_quad(id(0, i + 1, 0), id(0, i, 0), id(0, i, 1), id(0, i + 1, 1));
   }
-  return scene::as_mesh(std::move(shape));
+  return lab::as_mesh(std::move(shape));
 }
 
 std::vector<Shape> closed_shapes() {
   std::vector<Shape> shapes;
-  shapes.push_back({"torus", scene::as_mesh(scene::make_torus(96, 32)), 0.0});
-  shapes.push_back({"thin torus", scene::as_mesh(scene::make_torus(300, 8, 1.0, 0.01)), 0.0, 64});
-  shapes.push_back({"thin torus on a coarse grid", scene::as_mesh(scene::make_torus(300, 8, 1.0, 0.02)), 0.003, 64});
+  shapes.push_back({"torus", lab::as_mesh(lab::make_torus(96, 32)), 0.0});
+  shapes.push_back({"thin torus", lab::as_mesh(lab::make_torus(300, 8, 1.0, 0.01)), 0.0, 64});
+  shapes.push_back({"thin torus on a coarse grid", lab::as_mesh(lab::make_torus(300, 8, 1.0, 0.02)), 0.003, 64});
   shapes.push_back({"trefoil", trefoil(320, 12, 0.2), 0.0, 64});
   shapes.push_back({"trefoil on a coarse grid", trefoil(320, 12, 0.1), 0.01, 32});
-  shapes.push_back({"blade", scene::as_mesh(scene::make_blade(30)), 0.0});
+  shapes.push_back({"blade", lab::as_mesh(lab::make_blade(30)), 0.0});
   shapes.push_back({"two blades", two_blades(30, 2e-3, 4e-3), 0.0, 64});
   shapes.push_back({"sponge", sponge(20, 4, 1e-3), 0.0});
   shapes.push_back({"sponge in small clusters", sponge(16, 4, 1e-3), 0.0, 24});
-  shapes.push_back({"sphere on a coarse grid", scene::as_mesh(scene::make_sphere(24)), 0.02, 32});
-  shapes.push_back({"flat cube", scene::as_mesh(scene::make_cube(24)), 0.02, 32});
+  shapes.push_back({"sphere on a coarse grid", lab::as_mesh(lab::make_sphere(24)), 0.02, 32});
+  shapes.push_back({"flat cube", lab::as_mesh(lab::make_cube(24)), 0.02, 32});
   // Where the grid's step is a cell's, a vertex can hardly go anywhere but where one is or was.
-  shapes.push_back({"cube on its own cells", scene::as_mesh(scene::make_cube(32)), 0.055, 32});
+  shapes.push_back({"cube on its own cells", lab::as_mesh(lab::make_cube(32)), 0.055, 32});
   shapes.push_back({"sponge on its own cells", sponge(20, 4, 0.0), 0.87, 32});
   for (const std::uint64_t seed : {1U, 2U}) {
     shapes.push_back({"rough shell " + std::to_string(seed), rough_shell(40, seed), 0.87, 24});
   }
-  shapes.push_back({"boxes", scene::as_mesh(scene::make_box_soup(60)), 0.0});
-  shapes.push_back({"rock", scene::as_mesh(scene::make_rock(20)), 0.0});
+  shapes.push_back({"boxes", lab::as_mesh(lab::make_box_soup(60)), 0.0});
+  shapes.push_back({"rock", lab::as_mesh(lab::make_rock(20)), 0.0});
   return shapes;
 }
 
@@ -368,7 +368,7 @@ TEST(KeepTopology, WithoutItTheSameShapesLoseTheirs) {
 }
 
 TEST(KeepTopology, ItIsNotKeptAtThePriceOfNoLevels) {
-  EXPECT_LE(expect_kept({"torus", scene::as_mesh(scene::make_torus(96, 32)), 0.0}, 4, 4).coarsest, 128U);
+  EXPECT_LE(expect_kept({"torus", lab::as_mesh(lab::make_torus(96, 32)), 0.0}, 4, 4).coarsest, 128U);
   EXPECT_LE(expect_kept({"trefoil", trefoil(320, 12, 0.2), 0.0}, 4, 4).coarsest, 256U);
 }
 
@@ -388,7 +388,7 @@ TEST(KeepTopology, OpenSurfacesKeepTheirLoops) {
       }
       surface.triangles = std::move(rest);
     }
-    const Shape shape{"surface " + std::to_string(seed), scene::as_mesh(test::as_primitive(surface, 1e-3)),
+    const Shape shape{"surface " + std::to_string(seed), lab::as_mesh(test::as_primitive(surface, 1e-3)),
                       seed % 3 == 0 ? 0.004 : 0.0, 24};
     manifolds += expect_kept(shape, 20, 10).source.is_manifold() ? 1 : 0;
   }

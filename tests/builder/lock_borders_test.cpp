@@ -19,10 +19,10 @@
 #include "builder/plan/plan.h"
 #include "builder/prepare/prepare.h"
 #include "judge/verify/verify.h"
+#include "lab/samples/samples.h"
 #include "run/decode/decode.h"
 #include "run/read/asset.h"
 #include "run/select/select.h"
-#include "scene/samples/samples.h"
 
 namespace meshlode::builder {
 namespace {
@@ -172,8 +172,8 @@ double on_grid(double x, const run::Asset& asset) {
 
 TEST_P(Tiles, BuiltApartAbutAtAnyPairOfLevels) {
   const auto& [name, x, y, size, grid_step] = GetParam();
-  const scene::Scene left_scene = scene::as_scene(scene::as_mesh(make_tile(x, y, size)));
-  const scene::Scene right_scene = scene::as_scene(scene::as_mesh(make_tile(x + size, y, size)));
+  const scene::Scene left_scene = lab::as_scene(lab::as_mesh(make_tile(x, y, size)));
+  const scene::Scene right_scene = lab::as_scene(lab::as_mesh(make_tile(x + size, y, size)));
   const run::Asset left = build_scene(left_scene, locked(grid_step));
   const run::Asset right = build_scene(right_scene, locked(grid_step));
   expect_abut(Drawn(left, MeshId(0U)), Drawn(right, MeshId(0U)), on_grid(x + size, left), kCells);
@@ -190,7 +190,7 @@ INSTANTIATE_TEST_SUITE_P(Places, Tiles,
 TEST(Tiles, WithoutTheLockTheyDoNot) {
   PipelineOptions options = locked(0x1p-14);
   options.lock_borders = false;
-  const run::Asset left = build_scene(scene::as_scene(scene::as_mesh(make_tile(0.0, 0.0, 1.0))), options);
+  const run::Asset left = build_scene(lab::as_scene(lab::as_mesh(make_tile(0.0, 0.0, 1.0))), options);
   const Drawn drawn(left, MeshId(0U));
   EXPECT_NE(drawn.border_at(1.0, drawn.errors(kLevels).back()), drawn.border_at(1.0, 0.0))
       << "or the tests say nothing";
@@ -202,8 +202,8 @@ TEST(Tiles, OfOneFileAbutWhereInstancesMoveThemByStepsOfTheGrid) {
   const Vec3d moved(5000.0 * step, 12288.0 * step, -step);
   scene::Primitive piece = make_tile(1.0, 0.0, 1.0);
   for (Vec3d& p : piece.positions) p -= moved;
-  scene::Scene scene = scene::as_scene(scene::as_mesh(make_tile(0.0, 0.0, 1.0), "left"));
-  scene.meshes.push_back(scene::as_mesh(std::move(piece), "right"));
+  scene::Scene scene = lab::as_scene(lab::as_mesh(make_tile(0.0, 0.0, 1.0), "left"));
+  scene.meshes.push_back(lab::as_mesh(std::move(piece), "right"));
   scene.instances.emplace_back().mesh = MeshId(1U);
   scene.instances.back().transform[3] = {moved.x, moved.y, moved.z, 1.0};
   const run::Asset asset = build_scene(scene, locked(step));
@@ -212,8 +212,8 @@ TEST(Tiles, OfOneFileAbutWhereInstancesMoveThemByStepsOfTheGrid) {
 
 /// Two meshes of one file with the settings of each: the second one's border is not kept.
 TEST(Tiles, EachMeshMayBeLockedByItself) {
-  scene::Scene scene = scene::as_scene(scene::as_mesh(make_tile(0.0, 0.0, 1.0), "left"));
-  scene.meshes.push_back(scene::as_mesh(make_tile(1.0, 0.0, 1.0), "right"));
+  scene::Scene scene = lab::as_scene(lab::as_mesh(make_tile(0.0, 0.0, 1.0), "left"));
+  scene.meshes.push_back(lab::as_mesh(make_tile(1.0, 0.0, 1.0), "right"));
   scene.instances.emplace_back().mesh = MeshId(1U);
   PipelineOptions options = locked(0x1p-14);
   const run::Asset both = build_scene(scene, options);
@@ -231,7 +231,7 @@ TEST(Tiles, EachMeshMayBeLockedByItself) {
 
 /// What is locked is what the words say, group by group: a stuck group is one of the border, and no other is stuck.
 TEST(Tiles, GroupsThatTheBorderHoldsSaySo) {
-  const run::Asset asset = build_scene(scene::as_scene(scene::as_mesh(make_tile(0.0, 0.0, 1.0))), locked(0x1p-14));
+  const run::Asset asset = build_scene(lab::as_scene(lab::as_mesh(make_tile(0.0, 0.0, 1.0))), locked(0x1p-14));
   std::size_t held = 0;
   for (const format::GroupRecord& group : asset.groups()) {
     if ((group.flags & format::kGroupStuck) == 0) continue;
@@ -251,7 +251,7 @@ class LockedBorders : public testing::TestWithParam<Open> {};
 
 /// With and without topology, in two tiers.
 TEST_P(LockedBorders, AreInEveryCut) {
-  const scene::Scene scene = scene::as_scene(scene::as_mesh(GetParam().make()));
+  const scene::Scene scene = lab::as_scene(lab::as_mesh(GetParam().make()));
   for (const bool keep_topology : {false, true}) {
     PipelineOptions options = locked();
     options.keep_topology = keep_topology;
@@ -269,15 +269,15 @@ scene::Primitive make_thread() {
 }
 
 INSTANTIATE_TEST_SUITE_P(Shapes, LockedBorders,
-                         testing::Values(Open{"terrain", [] { return scene::make_terrain(60, 40); }},
-                                         Open{"moebius", [] { return scene::make_moebius(400, 8); }},
-                                         Open{"three sheets", [] { return scene::make_three_sheets(24); }},
-                                         Open{"slivers", [] { return scene::make_slivers(400); }},
-                                         Open{"zero areas", [] { return scene::make_zero_areas(20); }},
-                                         Open{"duplicates", [] { return scene::make_duplicates(20); }},
-                                         Open{"far plane", [] { return scene::make_far_plane(24); }},
-                                         Open{"foliage", [] { return scene::make_foliage(300); }},
-                                         Open{"loose pieces", [] { return scene::make_loose_pieces(300); }},
+                         testing::Values(Open{"terrain", [] { return lab::make_terrain(60, 40); }},
+                                         Open{"moebius", [] { return lab::make_moebius(400, 8); }},
+                                         Open{"three sheets", [] { return lab::make_three_sheets(24); }},
+                                         Open{"slivers", [] { return lab::make_slivers(400); }},
+                                         Open{"zero areas", [] { return lab::make_zero_areas(20); }},
+                                         Open{"duplicates", [] { return lab::make_duplicates(20); }},
+                                         Open{"far plane", [] { return lab::make_far_plane(24); }},
+                                         Open{"foliage", [] { return lab::make_foliage(300); }},
+                                         Open{"loose pieces", [] { return lab::make_loose_pieces(300); }},
                                          Open{"thread", make_thread}));
 
 std::size_t count_locked(scene::SourceMesh mesh) {
@@ -290,9 +290,9 @@ std::size_t count_locked(scene::SourceMesh mesh) {
 
 /// The border is of the whole mesh, by exact position: an edge between two primitives is none, nor one of a copy.
 TEST(OpenBorder, IsOfTheWholeMeshAndOfEdgesOfOneTriangle) {
-  EXPECT_EQ(count_locked(scene::as_mesh(scene::make_plane(8))), 32U);
-  EXPECT_EQ(count_locked(scene::as_mesh(scene::make_sphere(8))), 0U);
-  scene::SourceMesh halves = scene::as_mesh(scene::make_plane(8));
+  EXPECT_EQ(count_locked(lab::as_mesh(lab::make_plane(8))), 32U);
+  EXPECT_EQ(count_locked(lab::as_mesh(lab::make_sphere(8))), 0U);
+  scene::SourceMesh halves = lab::as_mesh(lab::make_plane(8));
   scene::Primitive& first = halves.primitives[0];
   scene::Primitive second = first;
   const auto middle = static_cast<std::ptrdiff_t>(first.indices.size() / 2 / 3 * 3);

@@ -4,8 +4,8 @@
 #include <utility>
 
 #include "base/random.h"
-#include "scene/samples/noise.h"
-#include "scene/samples/samples.h"
+#include "lab/samples/noise.h"
+#include "lab/samples/samples.h"
 
 namespace meshlode::test {
 
@@ -14,7 +14,7 @@ scene::Primitive make_fan(std::uint32_t valence) {
   fan.positions.emplace_back(0.0, 0.25, 0.0);
   for (std::uint32_t i = 0; i < valence; ++i) {
     const double turns = static_cast<double>(i) / valence;
-    fan.positions.emplace_back(scene::cos_turns(turns), 0.0, -scene::sin_turns(turns));
+    fan.positions.emplace_back(lab::cos_turns(turns), 0.0, -lab::sin_turns(turns));
     fan.indices.insert(fan.indices.end(), {0U, i + 1, (i + 1) % valence + 1});
   }
   fan.material = MaterialId(0U);
@@ -37,7 +37,7 @@ scene::Primitive make_identical(std::uint32_t count) {
 }
 
 scene::Scene make_striped_plane(std::uint32_t n, std::uint32_t materials) {
-  const scene::Primitive plane = scene::make_plane(n);
+  const scene::Primitive plane = lab::make_plane(n);
   scene::Scene scene;
   scene::SourceMesh& mesh = scene.meshes.emplace_back();
   mesh.name = "stripes";
@@ -57,7 +57,7 @@ scene::Scene make_striped_plane(std::uint32_t n, std::uint32_t materials) {
 }
 
 scene::Primitive make_coincident_spheres(std::uint32_t n, std::uint32_t sheets) {
-  const scene::Primitive sphere = scene::make_sphere(n);
+  const scene::Primitive sphere = lab::make_sphere(n);
   scene::Primitive shape = sphere;
   for (std::uint32_t s = 1; s < sheets; ++s) {
     const auto base = static_cast<std::uint32_t>(shape.positions.size());
@@ -89,7 +89,7 @@ scene::Primitive make_line_of_triangles(std::uint32_t count) {
 
 scene::Primitive make_fine_rings_beside_a_patch(std::uint64_t seed) {
   SplitMix64 random(seed);
-  scene::Primitive shape = scene::make_plane(12);
+  scene::Primitive shape = lab::make_plane(12);
   shape.material = MaterialId(0U);
   for (Vec3d& p : shape.positions) p = p * 15.0 + Vec3d(0.0, 0.2 * random.unit(), 0.0);
   constexpr std::uint32_t kAround = 24, kAcross = 9;
@@ -97,12 +97,12 @@ scene::Primitive make_fine_rings_beside_a_patch(std::uint64_t seed) {
     const double radius = 0.03 + 0.01 * ring, thickness = 0.0002 + 0.0001 * ring;
     const auto first = static_cast<std::uint32_t>(shape.positions.size());
     for (std::uint32_t i = 0; i < kAround; ++i) {
-      const Vec3d out(scene::cos_turns(static_cast<double>(i) / kAround), 0.0,
-                      scene::sin_turns(static_cast<double>(i) / kAround));
+      const Vec3d out(lab::cos_turns(static_cast<double>(i) / kAround), 0.0,
+                      lab::sin_turns(static_cast<double>(i) / kAround));
       for (std::uint32_t j = 0; j < kAcross; ++j) {
-        const double beside = radius + thickness * scene::cos_turns(static_cast<double>(j) / kAcross);
+        const double beside = radius + thickness * lab::cos_turns(static_cast<double>(j) / kAcross);
         shape.positions.push_back(Vec3d(2.0 * ring, 3.0, 5.0) + out * beside +
-                                  Vec3d(0.0, thickness * scene::sin_turns(static_cast<double>(j) / kAcross), 0.0));
+                                  Vec3d(0.0, thickness * lab::sin_turns(static_cast<double>(j) / kAcross), 0.0));
       }
     }
     for (std::uint32_t i = 0; i < kAround; ++i) {
@@ -126,7 +126,7 @@ scene::Primitive make_fine_rings_beside_a_patch(std::uint64_t seed) {
 }
 
 scene::Primitive make_ball_with_hairs() {
-  scene::Primitive shape = scene::make_sphere(16);
+  scene::Primitive shape = lab::make_sphere(16);
   shape.normals.clear();
   shape.material = MaterialId(0U);
   const auto at = [&](double x, double y, double z) {
@@ -145,7 +145,7 @@ scene::Primitive make_ball_with_hairs() {
 }
 
 scene::Primitive make_cube_with_t_junctions() {
-  scene::Primitive shape = scene::make_cube(1);
+  scene::Primitive shape = lab::make_cube(1);
   shape.normals.clear();
   shape.material = MaterialId(0U);
   // Every edge of the first triangle gets two more vertices, which its neighbours do not have.

@@ -9,8 +9,8 @@
 #include "builder/builder.h"
 #include "judge/validate/validate.h"
 #include "judge/verify/verify.h"
+#include "lab/samples/samples.h"
 #include "run/read/asset.h"
-#include "scene/samples/samples.h"
 #include "support/open_surface.h"
 
 namespace meshlode::builder {
@@ -29,7 +29,7 @@ void expect_nothing(const Report& report, const std::string& scene) {
 
 /// Builds by the quadric's own estimate, which needs no sampling: what is drawn is the same.
 void expect_sound(scene::Primitive shape, const std::string& name) {
-  const scene::Scene scene = scene::as_scene(scene::as_mesh(std::move(shape)));
+  const scene::Scene scene = lab::as_scene(lab::as_mesh(std::move(shape)));
   PipelineOptions options;
   options.error_tier = format::ErrorTier::kQem;
   PipelineReport report;

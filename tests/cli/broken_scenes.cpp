@@ -7,9 +7,9 @@
 #include <string>
 #include <utility>
 
-#include "scene/samples/samples.h"
-#include "scene/samples/write_glb.h"
-#include "scene/samples/write_png.h"
+#include "lab/samples/samples.h"
+#include "lab/samples/write_glb.h"
+#include "lab/samples/write_png.h"
 
 namespace meshlode::test {
 
@@ -21,11 +21,11 @@ using scene::Scene;
 constexpr std::uint32_t kCells = 20;  ///< along a side of the sphere's cube: 4800 triangles
 
 Primitive sphere() {
-  return scene::with_smooth_normals(scene::make_sphere(kCells));
+  return lab::with_smooth_normals(lab::make_sphere(kCells));
 }
 
 Scene scene_of(Primitive shape) {
-  return scene::as_scene(scene::as_mesh(std::move(shape)));
+  return lab::as_scene(lab::as_mesh(std::move(shape)));
 }
 
 /// A vertex of its own for every corner.
@@ -47,7 +47,7 @@ Vec3d center_of(const Primitive& shape, std::size_t first_index) {
 /// Each corner's normal halfway between the smooth one and its triangle's.
 Scene with_normals_split_everywhere() {
   Primitive shape = unshared(sphere());
-  const Primitive flat = scene::with_split_normals(sphere());
+  const Primitive flat = lab::with_split_normals(sphere());
   for (std::size_t i = 0; i < shape.normals.size(); ++i) {
     shape.normals[i] = glm::normalize(shape.normals[i] + flat.normals[i]);
   }
@@ -75,7 +75,7 @@ Scene with_seam() {
 }
 
 Scene with_spike() {
-  Primitive shape = scene::with_smooth_normals(scene::make_sphere(2 * kCells));
+  Primitive shape = lab::with_smooth_normals(lab::make_sphere(2 * kCells));
   shape.positions[shape.indices[3 * 1000]] *= 3.0;
   return scene_of(std::move(shape));
 }
@@ -98,9 +98,9 @@ Scene far_away() {
 
 /// Pebbles on a plane that is a quarter of a million times as wide.
 Scene with_pebbles() {
-  Primitive shape = scene::make_plane(20, 1000.0);
+  Primitive shape = lab::make_plane(20, 1000.0);
   shape.normals.assign(shape.positions.size(), Vec3f(0.0F, 1.0F, 0.0F));
-  const Primitive pebble = scene::with_smooth_normals(scene::make_sphere(4, 0.004));
+  const Primitive pebble = lab::with_smooth_normals(lab::make_sphere(4, 0.004));
   for (int i = 0; i < 3; ++i) {
     const auto first = static_cast<std::uint32_t>(shape.positions.size());
     for (const Vec3d& p : pebble.positions) shape.positions.push_back(p + Vec3d(i * 10.0, 1.0, i * 7.0));
@@ -114,7 +114,7 @@ Scene of_small_meshes() {
   Scene scene;
   scene.materials.emplace_back();
   for (std::uint32_t i = 0; i < 40; ++i) {
-    scene.meshes.push_back(scene::as_mesh(scene::make_cube(1)));
+    scene.meshes.push_back(lab::as_mesh(lab::make_cube(1)));
     scene::SceneInstance instance;
     instance.mesh = MeshId(i);
     scene.instances.push_back(instance);
@@ -186,7 +186,7 @@ Scene with_many_materials() {
 
 Scene with_undrawn_mesh() {
   Scene scene = sound_scene();
-  scene.meshes.push_back(scene::as_mesh(scene::with_smooth_normals(scene::make_torus(60, 40))));
+  scene.meshes.push_back(lab::as_mesh(lab::with_smooth_normals(lab::make_torus(60, 40))));
   return scene;
 }
 
@@ -218,10 +218,10 @@ scene::Scene sound_scene() {
 }
 
 std::vector<std::uint8_t> as_glb(const scene::Scene& scene) {
-  scene::GlbScene glb;
+  lab::GlbScene glb;
   const std::size_t images = std::max<std::size_t>(1, scene.blobs.size());
   for (std::size_t i = 0; i < images; ++i) {
-    glb.images.push_back({"image " + std::to_string(i), scene::encode_png(scene::make_stone_texture(64))});
+    glb.images.push_back({"image " + std::to_string(i), lab::encode_png(lab::make_stone_texture(64))});
   }
   bool is_any_sampled = false;
   for (const scene::SceneMaterial& material : scene.materials) {
@@ -236,7 +236,7 @@ std::vector<std::uint8_t> as_glb(const scene::Scene& scene) {
     glb.nodes.emplace_back();
     glb.nodes.back().mesh = instance.mesh.value;
   }
-  return scene::write_glb(glb);
+  return lab::write_glb(glb);
 }
 
 std::vector<BrokenScene> broken_scenes() {
@@ -245,12 +245,12 @@ std::vector<BrokenScene> broken_scenes() {
   add("nothing-to-draw", without_triangles());
   add("triangles-missing", with_few_missing());
   add("not-finite", with_no_numbers());
-  add("degenerate-faces", scene_of(scene::with_smooth_normals(scene::make_zero_areas(kCells))));
-  add("duplicate-faces", scene_of(scene::with_smooth_normals(scene::make_duplicates(kCells))));
+  add("degenerate-faces", scene_of(lab::with_smooth_normals(lab::make_zero_areas(kCells))));
+  add("duplicate-faces", scene_of(lab::with_smooth_normals(lab::make_duplicates(kCells))));
   add("non-manifold-edges", with_fins());
   add("inconsistent-orientation", with_turned_cap());
   add("unwelded-seams", with_seam());
-  add("needles", scene_of(scene::make_slivers(2000)));
+  add("needles", scene_of(lab::make_slivers(2000)));
   add("error-in-few-triangles", with_spike());
   add("far-from-origin", far_away());
   add("finer-than-grid", with_pebbles());

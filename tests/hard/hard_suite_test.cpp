@@ -13,11 +13,11 @@
 #include <utility>
 #include <vector>
 
+#include "lab/samples/samples.h"
 #include "laws/law.h"
 #include "laws/same_mesh.h"
 #include "run/child.h"
 #include "run/sweep.h"
-#include "scene/samples/samples.h"
 #include "support/reseal.h"
 #include "table/table.h"
 
@@ -38,8 +38,7 @@ Trial with_verdict(Verdict verdict) {
 }
 
 TEST(HardSuite, EqualMeshesCompareEqualAndOthersDoNot) {
-  const Built a = built(scene::make_rock(10)), again = built(scene::make_rock(10)),
-              other = built(scene::make_rock(10, 8));
+  const Built a = built(lab::make_rock(10)), again = built(lab::make_rock(10)), other = built(lab::make_rock(10, 8));
   EXPECT_EQ(compare_meshes(*a.asset, MeshId(0U), *again.asset, MeshId(0U)).difference, "");
   EXPECT_NE(compare_meshes(*a.asset, MeshId(0U), *other.asset, MeshId(0U)).difference, "");
   Change change;
@@ -48,7 +47,7 @@ TEST(HardSuite, EqualMeshesCompareEqualAndOthersDoNot) {
 }
 
 TEST(HardSuite, ALawFindsAnAssetOfAnotherSource) {
-  Built wrong = built(scene::make_rock(10));
+  Built wrong = built(lab::make_rock(10));
   scene::Primitive& shape = wrong.sample.scene.meshes[0].primitives[0];
   for (Vec3d& p : shape.positions) p.x *= 1.01;  // the sample says another source than was built
   EXPECT_EQ(check_invariants(wrong).verdict, Verdict::kFails);
@@ -61,7 +60,7 @@ TEST(HardSuite, ALawFindsAnAssetOfAnotherSource) {
 
 /// A mesh of levels, closed, with coordinates that are 0.
 Built closed_with_zeros() {
-  scene::Primitive shape = scene::make_rock(10);
+  scene::Primitive shape = lab::make_rock(10);
   for (Vec3d& p : shape.positions) {
     if (p.x == shape.positions[0].x && p.y == shape.positions[0].y) p.z = 0.0;
   }
@@ -100,7 +99,7 @@ TEST(HardSuite, EveryLawOfEqualityFindsATriangleTooMany) {
 
 /// Translation and the factor 3 compare two builds: what they compare with finds a shift and a factor that were not.
 TEST(HardSuite, ShiftsAndFactorsAreCompared) {
-  const Built a = built(scene::make_rock(10));
+  const Built a = built(lab::make_rock(10));
   const auto difference = [&](const Change& change) {
     return compare_meshes(*a.asset, MeshId(0U), *a.asset, MeshId(0U), change).difference;
   };
@@ -117,7 +116,7 @@ TEST(HardSuite, ShiftsAndFactorsAreCompared) {
 }
 
 TEST(HardSuite, ACutThatIsOpenIsFound) {
-  Built wrong = built(scene::make_rock(20));
+  Built wrong = built(lab::make_rock(20));
   ASSERT_EQ(check_closed_cuts(wrong).verdict, Verdict::kHolds);
   const auto is_fine = [](const format::GroupRecord& group) {
     return group.level == 0 && group.error < format::kInfiniteError;
@@ -134,7 +133,7 @@ TEST(HardSuite, ACutThatIsOpenIsFound) {
 }
 
 TEST(HardSuite, AHierarchyThatHidesAGroupIsFound) {
-  Sample sample = sample_of(scene::make_rock(10));
+  Sample sample = sample_of(lab::make_rock(10));
   HardView view;
   view.camera.eye = Vec3d(0.0, 0.0, 3.0);
   view.camera.target = Vec3d(0.0);
@@ -150,7 +149,7 @@ TEST(HardSuite, AHierarchyThatHidesAGroupIsFound) {
 
 /// Squares of its distances vanish from doubles; the judge's own may not.
 TEST(HardSuite, ATinyInstanceIsJudgedByItsDistances) {
-  Sample sample = sample_of(scene::make_rock(10));
+  Sample sample = sample_of(lab::make_rock(10));
   for (int axis = 0; axis < 3; ++axis) sample.scene.instances[0].transform[axis] *= 1e-200;
   const Result<Built> tiny = build_sample(std::move(sample));
   ASSERT_TRUE(tiny.ok());

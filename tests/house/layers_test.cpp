@@ -19,7 +19,7 @@ namespace {
 
 struct Layers {
   std::map<std::string, std::set<std::string>> allowed;    ///< floor -> floors
-  std::map<std::string, std::set<std::string>> forbidden;  ///< room -> rooms of the same floor, other floors
+  std::map<std::string, std::set<std::string>> forbidden;  ///< room -> rooms, other floors
 };
 
 Layers read_layers() {
@@ -56,8 +56,11 @@ std::string judge(const Layers& layers, const std::string& room, const Include& 
     }
   }
   const auto it = layers.forbidden.find(room);
-  const std::string& closed = floor == target_floor ? target : target_floor;
-  return it != layers.forbidden.end() && it->second.contains(closed) ? room + " may not include " + closed : "";
+  if (it == layers.forbidden.end()) return "";
+  for (const std::string& closed : {target, target_floor}) {
+    if (it->second.contains(closed)) return room + " may not include " + closed;
+  }
+  return "";
 }
 
 TEST(Layers, EveryIncludeIsAnAllowedEdge) {
@@ -122,7 +125,7 @@ TEST(Layers, TheRoomsOfAFloorIncludeEachOtherInNoCircle) {
       if (other != box && floor_of(other) == floor_of(box)) arrows[box].insert(other);
     }
   }
-  ASSERT_GT(arrows.size(), 50U);
+  ASSERT_GT(arrows.size(), 40U);
   std::string shown;
   for (const std::string& box : find_circle(arrows)) shown += box + " -> ";
   EXPECT_EQ(shown, "");
@@ -170,6 +173,9 @@ TEST(Layers, TheCheckFailsOnAForbiddenEdge) {
   EXPECT_EQ(judge(layers, "app/report", include("#include \"builder/builder.h\"")),
             "app/report may not include builder");
   EXPECT_EQ(judge(layers, "app/batch", include("#include \"builder/builder.h\"")), "");
+  EXPECT_EQ(judge(layers, "lab/samples", include("#include \"scene/import/import.h\"")),
+            "lab/samples may not include scene/import");
+  EXPECT_EQ(judge(layers, "cli", include("#include \"lab/samples/samples.h\"")), "cli may not include lab/samples");
 }
 
 // The judge shares no code with what it judges, the runtime stands alone, and neither half of a codec sees the other.

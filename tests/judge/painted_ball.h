@@ -9,16 +9,16 @@
 #include <gtest/gtest.h>
 
 #include "builder/builder.h"
-#include "scene/samples/samples.h"
+#include "lab/samples/samples.h"
 #include "support/png_header.h"
 
 namespace meshlode::test {
 
 /// A smooth ball that shows a picture of texels that are twice as wide as high, cast on it from the front.
 inline scene::Scene painted_scene() {
-  scene::Primitive ball = scene::with_smooth_normals(scene::make_sphere(16));
+  scene::Primitive ball = lab::with_smooth_normals(lab::make_sphere(16));
   for (const Vec3d& p : ball.positions) ball.uvs[0].emplace_back(Vec2f(Vec2d(0.5 + 0.5 * p.x, 0.5 + 0.5 * p.y)));
-  scene::Scene scene = scene::as_scene(scene::as_mesh(std::move(ball)));
+  scene::Scene scene = lab::as_scene(lab::as_mesh(std::move(ball)));
   scene::SceneBlob& blob = scene.blobs.emplace_back();
   blob.name = "picture";
   blob.bytes = png_of(256, 512);

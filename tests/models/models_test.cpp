@@ -16,10 +16,10 @@
 #include "judge/metrics/metrics.h"
 #include "judge/validate/validate.h"
 #include "judge/verify/verify.h"
+#include "lab/samples/samples.h"
 #include "run/select/random_dag.h"
 #include "run/select/select.h"
 #include "scene/import/import.h"
-#include "scene/samples/samples.h"
 
 namespace meshlode {
 namespace {
@@ -167,7 +167,7 @@ void judge(const std::optional<Built>& built, const Limits& limits) {
 scene::Scene as_facets(scene::Scene scene, float tilt) {
   for (scene::SourceMesh& mesh : scene.meshes) {
     for (scene::Primitive& primitive : mesh.primitives) {
-      primitive = scene::with_split_normals(primitive);
+      primitive = lab::with_split_normals(primitive);
       for (Vec3f& normal : primitive.normals) normal = glm::normalize(normal + Vec3f(tilt, 0.0F, 0.0F));
     }
   }

@@ -14,9 +14,9 @@
 #include "judge/validate/judged_sample.h"
 #include "judge/validate/validate.h"
 #include "judge/verify/verify.h"
+#include "lab/samples/samples.h"
 #include "mutation/mutators.h"
 #include "run/read/asset.h"
-#include "scene/samples/samples.h"
 #include "support/sample_asset.h"
 
 namespace meshlode {
@@ -142,11 +142,11 @@ Original make_built(const char* name, scene::Scene scene, const builder::Pipelin
 }
 
 scene::Scene alone(scene::Primitive shape) {
-  return scene::as_scene(scene::as_mesh(std::move(shape)));
+  return lab::as_scene(lab::as_mesh(std::move(shape)));
 }
 
 const Original& several_pages() {
-  static const Original rock = make_built("a rock of several pages", alone(scene::make_rock(48)));
+  static const Original rock = make_built("a rock of several pages", alone(lab::make_rock(48)));
   return rock;
 }
 
@@ -155,7 +155,7 @@ const Original& promised() {
     builder::PipelineOptions options;
     options.max_cluster_triangles = 48;
     options.promise = format::Promise::kAppearance;
-    return make_built("a ball that promises appearance", alone(scene::with_smooth_normals(scene::make_sphere(16))),
+    return make_built("a ball that promises appearance", alone(lab::with_smooth_normals(lab::make_sphere(16))),
                       options);
   }();
   return ball;
@@ -230,8 +230,8 @@ TEST(Mutation, ThousandsOfMutantsOfTheMeasuredTierAreFound) {
   options.max_cluster_triangles = 48;
   smallest.max_cluster_triangles = 16;
   run_mutants({make_built("the sample's scene", test::sample_scene(), smallest),
-               make_built("a rock", alone(scene::make_rock(16)), options),
-               make_built("a terrain", alone(scene::make_terrain(48, 48)), options)},
+               make_built("a rock", alone(lab::make_rock(16)), options),
+               make_built("a terrain", alone(lab::make_terrain(48, 48)), options)},
               MESHLODE_MUTANTS_PER_KIND);
 }
 #endif

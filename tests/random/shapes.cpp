@@ -5,7 +5,7 @@
 #include <iterator>
 #include <map>
 
-#include "scene/samples/noise.h"
+#include "lab/samples/noise.h"
 
 namespace meshlode::test {
 
@@ -63,7 +63,7 @@ struct Relief {
     if (dice.chance(0.5)) noise = dice.octaves(-14, -4);
   }
   [[nodiscard]] double at(double x, double y, Dice& dice) const {
-    return hills * scene::value_noise({waves * x, waves * y, 0.5}, seed) + noise * dice.signed_unit();
+    return hills * lab::value_noise({waves * x, waves * y, 0.5}, seed) + noise * dice.signed_unit();
   }
 };
 
@@ -79,8 +79,8 @@ Shape make_ball(Dice& dice, std::uint32_t triangles) {
   if (dice.chance(0.3)) squash[static_cast<int>(dice.below(3))] = dice.octaves(-10, 0);
   const auto place = [&](double column, double row) {
     const double around = column, down = 0.5 * row;
-    const Vec3d p(scene::sin_turns(down) * scene::cos_turns(around), scene::cos_turns(down),
-                  scene::sin_turns(down) * scene::sin_turns(around));
+    const Vec3d p(lab::sin_turns(down) * lab::cos_turns(around), lab::cos_turns(down),
+                  lab::sin_turns(down) * lab::sin_turns(around));
     return squash * p * (1.0 + 0.4 * relief.at(p.x, p.y, dice));
   };
   const std::uint32_t top = shape.add(place(0.0, 0.0)), bottom = shape.add(place(0.0, 1.0));
@@ -104,9 +104,8 @@ Shape make_torus(Dice& dice, std::uint32_t triangles) {
   const double noise = dice.chance(0.4) ? tube * dice.octaves(-6, 0) : 0.0;
   add_grid(shape, {major, minor, true, true}, [&](std::uint32_t i, std::uint32_t j) {
     const double a = share(i, major), b = share(j, minor);
-    const double radius = 1.0 + tube * scene::cos_turns(b);
-    return Vec3d(radius * scene::cos_turns(a), tube * scene::sin_turns(b), radius * scene::sin_turns(a)) +
-           dice.vector(noise);
+    const double radius = 1.0 + tube * lab::cos_turns(b);
+    return Vec3d(radius * lab::cos_turns(a), tube * lab::sin_turns(b), radius * lab::sin_turns(a)) + dice.vector(noise);
   });
   return shape;
 }
@@ -157,8 +156,8 @@ Shape make_tubes(Dice& dice, std::uint32_t triangles) {
     const std::uint32_t first =
         add_grid(shape, {around, along, true, false}, [&, u = u, w = w](std::uint32_t i, std::uint32_t j) {
           const double t = share(j, along), a = share(i, around);
-          return start + axis * (length * t) + u * (bend * scene::sin_turns(t) + radius * scene::cos_turns(a)) +
-                 w * (radius * scene::sin_turns(a));
+          return start + axis * (length * t) + u * (bend * lab::sin_turns(t) + radius * lab::cos_turns(a)) +
+                 w * (radius * lab::sin_turns(a));
         });
     if (!is_closed) continue;
     const std::uint32_t last = first + along * around;
@@ -179,7 +178,7 @@ Shape make_cylinder(Dice& dice, std::uint32_t triangles) {
   for (std::uint32_t side = 0; side < 2; ++side) {
     rings[side] = static_cast<std::uint32_t>(shape.points.size());
     for (std::uint32_t i = 0; i < n; ++i) {
-      shape.add({scene::cos_turns(share(i, n)), height * side, scene::sin_turns(share(i, n))});
+      shape.add({lab::cos_turns(share(i, n)), height * side, lab::sin_turns(share(i, n))});
     }
   }
   for (std::uint32_t i = 0; i < n; ++i) {
@@ -341,9 +340,8 @@ Shape make_moebius(Dice& dice, std::uint32_t triangles) {
   const double width = dice.octaves(-6, 0) * 0.5;
   const auto place = [&](std::uint32_t i, std::uint32_t j) {
     const double a = share(i, n), across = width * (2.0 * share(j, m) - 1.0);
-    const double radius = 1.0 + across * scene::cos_turns(0.5 * twists * a);
-    return Vec3d(radius * scene::cos_turns(a), across * scene::sin_turns(0.5 * twists * a),
-                 radius * scene::sin_turns(a));
+    const double radius = 1.0 + across * lab::cos_turns(0.5 * twists * a);
+    return Vec3d(radius * lab::cos_turns(a), across * lab::sin_turns(0.5 * twists * a), radius * lab::sin_turns(a));
   };
   const std::uint32_t first = add_grid(shape, {n - 1, m}, place);
   const bool is_turned = twists % 2 == 1;
@@ -363,7 +361,7 @@ Shape make_terraces(Dice& dice, std::uint32_t triangles) {
   const double waves = dice.range(1.0, 5.0), noise = dice.chance(0.3) ? dice.octaves(-20, -6) : 0.0;
   add_grid(shape, {n, n}, [&](std::uint32_t i, std::uint32_t j) {
     const double x = share(i, n), y = share(j, n);
-    const double height = scene::fractal_noise({waves * x, waves * y, 0.5}, 3, seed);
+    const double height = lab::fractal_noise({waves * x, waves * y, 0.5}, 3, seed);
     return Vec3d(x, std::floor(height * steps) / steps + noise * dice.signed_unit(), y);
   });
   return shape;
@@ -378,7 +376,7 @@ Shape make_patch_and_quads(Dice& dice, std::uint32_t triangles) {
   const std::uint64_t seed = dice.next();
   add_grid(shape, {n, n}, [&](std::uint32_t i, std::uint32_t j) {
     const double x = share(i, n), y = share(j, n);
-    return Vec3d(size * x, bumps * scene::value_noise({7.0 * x, 7.0 * y, 0.5}, seed), size * y);
+    return Vec3d(size * x, bumps * lab::value_noise({7.0 * x, 7.0 * y, 0.5}, seed), size * y);
   });
   for (std::uint32_t k = 0; k < quads; ++k) {
     const Vec3d place = dice.vector(1.0), u = dice.vector(0.5), v = dice.vector(0.5);
@@ -401,7 +399,7 @@ Shape make_t_junctions(Dice& dice, std::uint32_t triangles) {
     const std::uint32_t columns = std::max(1U, side_of(budget) / strips), rows = std::max(1U, budget / (2 * columns));
     add_grid(shape, {columns, rows}, [&](std::uint32_t i, std::uint32_t j) {
       const double x = (s + (1.0 - gap) * share(i, columns)) / strips, y = share(j, rows);
-      return Vec3d(x, relief.hills * scene::value_noise({3.0 * x, 3.0 * y, 0.5}, relief.seed), y);
+      return Vec3d(x, relief.hills * lab::value_noise({3.0 * x, 3.0 * y, 0.5}, relief.seed), y);
     });
   }
   return shape;
@@ -552,8 +550,7 @@ Shape make_book(Dice& dice, std::uint32_t triangles) {
     const std::size_t before = shape.triangles.size();
     const std::uint32_t first = add_grid(shape, {n, n}, [&](std::uint32_t i, std::uint32_t j) {
       if (i == 0) return shape.points[spine[j]];
-      return Vec3d(share(i, n) * scene::cos_turns(a), share(j, n), share(i, n) * scene::sin_turns(a)) +
-             dice.vector(noise);
+      return Vec3d(share(i, n) * lab::cos_turns(a), share(j, n), share(i, n) * lab::sin_turns(a)) + dice.vector(noise);
     });
     for (std::size_t t = before; t < shape.triangles.size(); ++t) {
       for (std::uint32_t& v : shape.triangles[t]) {
@@ -594,7 +591,7 @@ Shape make_wheel(Dice& dice, std::uint32_t triangles) {
     const double noise = dice.chance(0.3) ? dice.octaves(-8, -2) : 0.0;
     for (std::uint32_t i = 0; i < n; ++i) {
       const double side = c == 0 ? height : -height;
-      shape.add(Vec3d(scene::cos_turns(share(i, n)), side, scene::sin_turns(share(i, n))) + dice.vector(noise));
+      shape.add(Vec3d(lab::cos_turns(share(i, n)), side, lab::sin_turns(share(i, n))) + dice.vector(noise));
     }
     for (std::uint32_t i = 0; i < n; ++i) shape.triangle(tip, first + i, first + (i + 1) % n);
   }
@@ -640,7 +637,7 @@ Shape make_layers(Dice& dice, std::uint32_t triangles) {
     const bool slips = dice.chance(0.3);
     add_grid(shape, {n, n}, [&](std::uint32_t i, std::uint32_t j) {
       const double x = share(i, n), y = share(j, n);
-      const double hill = relief.hills * scene::value_noise({3.0 * x, 3.0 * y, 0.5}, relief.seed);
+      const double hill = relief.hills * lab::value_noise({3.0 * x, 3.0 * y, 0.5}, relief.seed);
       return Vec3d(x + (slips ? gap * dice.signed_unit() : 0.0), hill + gap * k, y);
     });
   }

@@ -5,8 +5,8 @@
 #include <cstring>
 #include <optional>
 
+#include "lab/samples/write_png.h"
 #include "scene.h"
-#include "scene/samples/write_png.h"
 
 namespace meshlode::test {
 
@@ -178,7 +178,7 @@ std::vector<std::uint8_t> write_glb(const RandomScene& scene) {
   json += array_text("nodes", nodes) + array_text("meshes", meshes) + array_text("materials", materials);
   if (is_textured) {
     const std::size_t start = buffer.bytes.size();
-    const auto png = scene::encode_png(scene::make_leaf_texture(16));
+    const auto png = lab::encode_png(lab::make_leaf_texture(16));
     buffer.bytes.insert(buffer.bytes.end(), png.begin(), png.end());
     const std::uint32_t view = buffer.end_view(start);
     json +=

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "builder/builder.h"
-#include "scene/samples/write_png.h"
+#include "lab/samples/write_png.h"
 
 namespace meshlode::test {
 
@@ -94,14 +94,14 @@ scene::Scene mask_scene(const MaskSceneOptions& options) {
   blob.mime_type = "image/png";
   blob.bytes = options.image;
   if (blob.bytes.empty()) {
-    scene::Texture texture{kMaskTextureWidth, kMaskTextureHeight, {}};
+    lab::Texture texture{kMaskTextureWidth, kMaskTextureHeight, {}};
     for (std::uint32_t y = 0; y < texture.height; ++y) {
       for (std::uint32_t x = 0; x < texture.width; ++x) {
         const std::uint8_t c = static_cast<std::uint8_t>(10 * x), d = static_cast<std::uint8_t>(15 * y);
         texture.rgba.insert(texture.rgba.end(), {c, d, 90, mask_texture_alpha(x, y)});
       }
     }
-    blob.bytes = scene::encode_png(texture);
+    blob.bytes = lab::encode_png(texture);
   }
   scene.blobs.push_back(std::move(blob));
   return scene;

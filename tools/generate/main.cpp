@@ -13,13 +13,13 @@
 
 #include "base/amounts.h"
 #include "base/file.h"
-#include "scene/samples/samples.h"
+#include "lab/samples/samples.h"
 
 namespace {
 
 using namespace meshlode;
 
-int write(const std::filesystem::path& folder, const scene::SampleFile& file) {
+int write(const std::filesystem::path& folder, const lab::SampleFile& file) {
   const std::filesystem::path path = folder / file.name;
   if (const Status written = write_file_atomically(path, file.bytes); !written) {
     std::fprintf(stderr, "meshlode_generate: %s\n", written.error().message().c_str());
@@ -42,16 +42,16 @@ int run(const char* out_dir, const char* triangles_text, std::string_view option
     std::fprintf(stderr, "meshlode_generate: %s: %s\n", out_dir, failure.message().c_str());
     return static_cast<int>(ErrorCode::kIo);
   }
-  if (triangles) return write(out_dir, scene::make_terrain_file(*triangles));
-  if (option == "--painted") return write(out_dir, scene::make_painted_tree_file());
+  if (triangles) return write(out_dir, lab::make_terrain_file(*triangles));
+  if (option == "--painted") return write(out_dir, lab::make_painted_tree_file());
   if (option == "--aggregates") {
-    for (const std::string& name : scene::aggregate_names()) {
-      if (const int code = write(out_dir, scene::make_aggregate_file(name)); code != 0) return code;
+    for (const std::string& name : lab::aggregate_names()) {
+      if (const int code = write(out_dir, lab::make_aggregate_file(name)); code != 0) return code;
     }
     return 0;
   }
-  for (const std::string& name : scene::sample_names()) {
-    if (const int code = write(out_dir, scene::make_sample_file(name)); code != 0) return code;
+  for (const std::string& name : lab::sample_names()) {
+    if (const int code = write(out_dir, lab::make_sample_file(name)); code != 0) return code;
   }
   return 0;
 }

@@ -16,8 +16,8 @@
 #include "builder/builder.h"
 #include "builder/odd_shapes.h"
 #include "judge/validate/edit.h"
+#include "lab/samples/samples.h"
 #include "scene/detect/precision_faults.h"
-#include "scene/samples/samples.h"
 
 namespace meshlode::app {
 namespace {
@@ -45,11 +45,11 @@ std::vector<Diagnosis> diagnose(std::vector<std::uint8_t> bytes) {
 }
 
 TEST(AssetFaults, NothingIsWrongWithASphere) {
-  EXPECT_TRUE(diagnose(bytes_of(scene::as_scene(scene::as_mesh(scene::make_sphere(16))))).empty());
+  EXPECT_TRUE(diagnose(bytes_of(lab::as_scene(lab::as_mesh(lab::make_sphere(16))))).empty());
 }
 
 TEST(AssetFaults, StuckGroupsAreCountedByReason) {
-  const scene::Scene chaos = scene::as_scene(scene::as_mesh(test::make_lattice_chaos(20000, 8, 7), "chaos"));
+  const scene::Scene chaos = lab::as_scene(lab::as_mesh(test::make_lattice_chaos(20000, 8, 7), "chaos"));
   test::AssetEdit edit(bytes_of(chaos));
   std::uint64_t stuck = 0, of_borders = 0;
   for (std::size_t g = 0; g < edit.groups().size(); ++g) {
@@ -73,7 +73,7 @@ TEST(AssetFaults, StuckGroupsAreCountedByReason) {
 }
 
 TEST(AssetFaults, OneGroupOfManyThatHoldsTheError) {
-  test::AssetEdit edit(bytes_of(scene::as_scene(scene::as_mesh(scene::make_sphere(64)))));
+  test::AssetEdit edit(bytes_of(lab::as_scene(lab::as_mesh(lab::make_sphere(64)))));
   std::vector<std::size_t> first_level;
   for (std::size_t g = 0; g < edit.groups().size(); ++g) {
     if (edit.groups()[g].level == 0) first_level.push_back(g);
@@ -94,7 +94,7 @@ TEST(AssetFaults, OneGroupOfManyThatHoldsTheError) {
 }
 
 TEST(AssetFaults, DroppedTrianglesEstimatesAndWhatWasLeftOut) {
-  scene::Scene scene = scene::as_scene(scene::as_mesh(scene::make_zero_areas(12)));
+  scene::Scene scene = lab::as_scene(lab::as_mesh(lab::make_zero_areas(12)));
   scene.left_out.push_back({"skin 0", "no joints"});
   const std::vector<Diagnosis> diagnoses = diagnose(bytes_of(scene, format::ErrorTier::kQem));
   ASSERT_EQ(diagnoses.size(), 3U);
@@ -108,15 +108,15 @@ TEST(AssetFaults, DroppedTrianglesEstimatesAndWhatWasLeftOut) {
 
 /// What the source says before a build is what the build then counts: the grid is the same.
 TEST(AssetFaults, CollapsesWhatTheSourceWarnsOf) {
-  scene::Primitive shape = scene::make_plane(30, 1000.0);
-  const scene::Primitive ball = scene::make_sphere(5, 0.001);
+  scene::Primitive shape = lab::make_plane(30, 1000.0);
+  const scene::Primitive ball = lab::make_sphere(5, 0.001);
   const auto first = static_cast<std::uint32_t>(shape.positions.size());
   for (const Vec3d& p : ball.positions) shape.positions.push_back(p + Vec3d(0.5, 1.0, 0.5));
   for (const std::uint32_t v : ball.indices) shape.indices.push_back(first + v);
-  const scene::SourceMesh mesh = scene::as_mesh(shape);
+  const scene::SourceMesh mesh = lab::as_mesh(shape);
   const scene::Fault warned = scene::find_finer_than_grid(scene::make_topology(mesh));
   EXPECT_EQ(warned.count, 300U);
-  const auto asset = run::Asset::from_vector(bytes_of(scene::as_scene(mesh)));
+  const auto asset = run::Asset::from_vector(bytes_of(lab::as_scene(mesh)));
   ASSERT_TRUE(asset.ok());
   const format::Grid& grid = asset->meshes()[0].grid;
   EXPECT_EQ(warned.measure, std::ldexp(grid.mantissa, grid.log2));
@@ -124,7 +124,7 @@ TEST(AssetFaults, CollapsesWhatTheSourceWarnsOf) {
 }
 
 TEST(AssetFaults, ManySmallMeshes) {
-  scene::Scene scene = scene::as_scene(scene::as_mesh(scene::make_cube(1)));
+  scene::Scene scene = lab::as_scene(lab::as_mesh(lab::make_cube(1)));
   EXPECT_TRUE(diagnose(bytes_of(scene)).empty());
   for (std::uint32_t i = 1; i < 16; ++i) {
     scene.instances.push_back(scene.instances[0]);
@@ -138,7 +138,7 @@ TEST(AssetFaults, ManySmallMeshes) {
 
 /// Whatever a record says, as long as the asset opens.
 TEST(AssetFaultsHostile, AnyBytesInTheTables) {
-  test::AssetEdit sound(bytes_of(scene::as_scene(scene::as_mesh(scene::make_sphere(12)))));
+  test::AssetEdit sound(bytes_of(lab::as_scene(lab::as_mesh(lab::make_sphere(12)))));
   SplitMix64 random(3);
   std::uint64_t opened = 0;
   for (int i = 0; i < 400; ++i) {

@@ -7,8 +7,8 @@
 
 #include "builder/builder.h"
 #include "format/grid.h"
+#include "lab/samples/samples.h"
 #include "run/decode/decode.h"
-#include "scene/samples/samples.h"
 
 namespace meshlode::test {
 
@@ -23,7 +23,7 @@ std::vector<std::uint8_t> build_bytes(const scene::Scene& scene, double grid_ste
 }
 
 scene::Scene make_rock_scene(std::uint32_t n) {
-  const scene::Primitive rock = scene::make_rock(n);
+  const scene::Primitive rock = lab::make_rock(n);
   scene::Scene scene;
   scene::SourceMesh& mesh = scene.meshes.emplace_back();
   mesh.name = "rock";

@@ -7,7 +7,7 @@
 
 #include "app/export/choose_cuts.h"
 #include "build_scene.h"
-#include "scene/samples/samples.h"
+#include "lab/samples/samples.h"
 
 namespace meshlode::app {
 namespace {
@@ -28,7 +28,7 @@ bool is_closed(const run::Asset& asset, const std::vector<ClusterId>& cut) {
 }
 
 TEST(ChooseCuts, LevelsGoFromTheFinestCutToTheRoots) {
-  const auto bytes = test::build_bytes(scene::as_scene(scene::as_mesh(scene::make_sphere(24))));
+  const auto bytes = test::build_bytes(lab::as_scene(lab::as_mesh(lab::make_sphere(24))));
   const auto asset = run::Asset::from_bytes(bytes);
   ASSERT_TRUE(asset.ok());
   const std::uint32_t levels = asset->meshes()[0].level_count;
@@ -47,7 +47,7 @@ TEST(ChooseCuts, LevelsGoFromTheFinestCutToTheRoots) {
 }
 
 TEST(ChooseCuts, OneInstanceGetsExactlyWhatItsCameraDraws) {
-  const auto bytes = test::build_bytes(scene::as_scene(scene::as_mesh(scene::make_sphere(24))));
+  const auto bytes = test::build_bytes(lab::as_scene(lab::as_mesh(lab::make_sphere(24))));
   const auto asset = run::Asset::from_bytes(bytes);
   ASSERT_TRUE(asset.ok());
   for (const double distance : {1.01, 1.5, 4.0, 50.0, 1e5}) {
@@ -61,7 +61,7 @@ TEST(ChooseCuts, OneInstanceGetsExactlyWhatItsCameraDraws) {
 }
 
 TEST(ChooseCuts, TwoInstancesShareACutThatIsFineEnoughForBoth) {
-  scene::Scene scene = scene::as_scene(scene::as_mesh(scene::make_sphere(24)));
+  scene::Scene scene = lab::as_scene(lab::as_mesh(lab::make_sphere(24)));
   scene::SceneInstance left = scene.instances.at(0);
   left.transform[3] = {-30.0, 0.0, 0.0, 1.0};
   scene.instances.push_back(left);
@@ -91,7 +91,7 @@ TEST(ChooseCuts, TwoInstancesShareACutThatIsFineEnoughForBoth) {
 }
 
 TEST(ChooseCuts, AMeshThatNobodyDrawsHasNoCameraCut) {
-  scene::Scene scene = scene::as_scene(scene::as_mesh(scene::make_sphere(4)));
+  scene::Scene scene = lab::as_scene(lab::as_mesh(lab::make_sphere(4)));
   scene.instances.clear();
   const auto bytes = test::build_bytes(scene);
   const auto asset = run::Asset::from_bytes(bytes);

@@ -8,7 +8,7 @@
 
 #include "app/export/export.h"
 #include "build_scene.h"
-#include "scene/samples/samples.h"
+#include "lab/samples/samples.h"
 
 namespace meshlode::app {
 namespace {

@@ -8,8 +8,8 @@
 
 #include "app/export/export.h"
 #include "build_scene.h"
+#include "lab/samples/samples.h"
 #include "run/decode/decode.h"
-#include "scene/samples/samples.h"
 
 namespace meshlode::app {
 namespace {
@@ -102,7 +102,7 @@ TEST(Export, NormalsAreUnitAndUvsAreTheSources) {
 }
 
 TEST(Export, FlatMeshesHaveNoNormals) {
-  scene::Scene scene = scene::as_scene(scene::as_mesh(scene::make_cube(4), "cube"));
+  scene::Scene scene = lab::as_scene(lab::as_mesh(lab::make_cube(4), "cube"));
   const auto bytes = test::build_bytes(scene);
   const auto asset = run::Asset::from_bytes(bytes);
   ASSERT_TRUE(asset.ok());
@@ -116,12 +116,12 @@ TEST(Export, FlatMeshesHaveNoNormals) {
 }
 
 TEST(Export, ColorsComeBackAsTheirBytes) {
-  scene::Primitive shape = scene::make_sphere(6);
+  scene::Primitive shape = lab::make_sphere(6);
   for (std::size_t i = 0; i < shape.positions.size(); ++i) {
     const float c = static_cast<float>(i % 256) / 255.0F;
     shape.colors.emplace_back(c, 1.0F - c, 0.25F, 1.0F);
   }
-  const auto bytes = test::build_bytes(scene::as_scene(scene::as_mesh(std::move(shape))));
+  const auto bytes = test::build_bytes(lab::as_scene(lab::as_mesh(std::move(shape))));
   const auto asset = run::Asset::from_bytes(bytes);
   ASSERT_TRUE(asset.ok());
   ASSERT_EQ(asset->meshes()[0].has_color, 1U);

@@ -6,7 +6,7 @@
 
 #include "app/export/export.h"
 #include "build_scene.h"
-#include "scene/samples/samples.h"
+#include "lab/samples/samples.h"
 
 namespace meshlode::app {
 namespace {
@@ -18,7 +18,7 @@ Glb export_finest(const run::Asset& asset) {
 }
 
 TEST(ExportFar, AMeshAMillionUnitsAwayKeepsItsFeaturesThroughAChildNode) {
-  scene::Scene scene = scene::as_scene(scene::as_mesh(scene::make_far_plane(16), "far"));
+  scene::Scene scene = lab::as_scene(lab::as_mesh(lab::make_far_plane(16), "far"));
   scene.document = R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
     "nodes": [{"name": "holder", "mesh": 0, "rotation": [0, 1, 0, 0], "children": [1]}, {"name": "other"}],
     "meshes": [{"name": "far"}]})";
@@ -47,7 +47,7 @@ TEST(ExportFar, AMeshAMillionUnitsAwayKeepsItsFeaturesThroughAChildNode) {
 
 TEST(ExportFar, AMeshNearItsOriginIsNotMoved) {
   for (const double factor : {1e-6, 1.0, 1e9}) {
-    scene::Scene scene = scene::as_scene(scene::as_mesh(scene::scaled(scene::make_rock(6), factor), "near"));
+    scene::Scene scene = lab::as_scene(lab::as_mesh(lab::scaled(lab::make_rock(6), factor), "near"));
     const auto bytes = test::build_bytes(scene);
     const auto asset = run::Asset::from_bytes(bytes);
     ASSERT_TRUE(asset.ok());

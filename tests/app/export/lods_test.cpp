@@ -8,7 +8,7 @@
 #include "app/export/choose_cuts.h"
 #include "app/export/export.h"
 #include "build_scene.h"
-#include "scene/samples/samples.h"
+#include "lab/samples/samples.h"
 
 namespace meshlode::app {
 namespace {
@@ -38,7 +38,7 @@ Glb export_chain(const run::Asset& asset, const LodChain& chain) {
 }
 
 TEST(Budget, IsTheFinestUniformCutThatFits) {
-  const auto bytes = test::build_bytes(scene::as_scene(scene::as_mesh(scene::make_sphere(24))));
+  const auto bytes = test::build_bytes(lab::as_scene(lab::as_mesh(lab::make_sphere(24))));
   const auto asset = run::Asset::from_bytes(bytes);
   ASSERT_TRUE(asset.ok());
   // All uniform cuts there are, by the other way to make them.
@@ -63,7 +63,7 @@ TEST(Budget, IsTheFinestUniformCutThatFits) {
 }
 
 TEST(Budget, OneThresholdInEachMeshsOwnUnit) {
-  scene::Scene scene = scene::as_scene(scene::as_mesh(scene::make_sphere(24)));
+  scene::Scene scene = lab::as_scene(lab::as_mesh(lab::make_sphere(24)));
   scene::SourceMesh large = scene.meshes[0];
   for (Vec3d& p : large.primitives[0].positions) p *= 1024.0;
   scene.meshes.push_back(large);
@@ -141,7 +141,7 @@ TEST(Lods, ANodeThatIsMovedOrHasChildrenGetsAFrameForItsLevels) {
 }
 
 TEST(Lods, AllLevelsOfAFarAwayMeshShareItsOrigin) {
-  scene::Scene scene = scene::as_scene(scene::as_mesh(scene::make_sphere(24)));
+  scene::Scene scene = lab::as_scene(lab::as_mesh(lab::make_sphere(24)));
   for (Vec3d& p : scene.meshes[0].primitives[0].positions) p += Vec3d(1e6, 0.0, 0.0);
   const auto bytes = test::build_bytes(scene);
   const auto asset = run::Asset::from_bytes(bytes);

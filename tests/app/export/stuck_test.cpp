@@ -14,8 +14,8 @@
 #include "builder/odd_shapes.h"
 #include "format/names.h"
 #include "judge/validate/edit.h"
+#include "lab/samples/samples.h"
 #include "meshlode/extract_stuck.h"
-#include "scene/samples/samples.h"
 
 namespace meshlode::app {
 namespace {
@@ -23,7 +23,7 @@ namespace {
 /// Triangles between random points of a lattice: non-manifold everywhere, so that nothing can be simplified.
 const std::vector<std::uint8_t>& stuck_bytes() {
   static const auto bytes =
-      test::build_bytes(scene::as_scene(scene::as_mesh(test::make_lattice_chaos(20000, 8, 7), "chaos")));
+      test::build_bytes(lab::as_scene(lab::as_mesh(test::make_lattice_chaos(20000, 8, 7), "chaos")));
   return bytes;
 }
 

@@ -10,8 +10,8 @@
 #include "app/preview/plan_report.h"
 #include "builder/plan/count_wedges.h"
 #include "builder/plan/features.h"
+#include "lab/samples/samples.h"
 #include "run/read/asset.h"
-#include "scene/samples/samples.h"
 
 namespace meshlode::app {
 namespace {
@@ -20,14 +20,14 @@ scene::Scene scene_of(scene::Primitive shape) {
   scene::SceneMaterial material;
   material.uv_sets_used = 1;
   shape.material = MaterialId(0U);
-  scene::Scene scene = scene::as_scene(scene::as_mesh(std::move(shape)));
+  scene::Scene scene = lab::as_scene(lab::as_mesh(std::move(shape)));
   scene.materials = {material};
   return scene;
 }
 
 TEST(ScenePlan, GridNormalsAndUvsAreThoseOfTheBuild) {
-  for (scene::Primitive shape : {scene::make_rock(16), scene::make_foliage(40), scene::make_terrain(30, 30),
-                                 scene::with_smooth_normals(scene::make_sphere(12)), scene::make_plane(3)}) {
+  for (scene::Primitive shape : {lab::make_rock(16), lab::make_foliage(40), lab::make_terrain(30, 30),
+                                 lab::with_smooth_normals(lab::make_sphere(12)), lab::make_plane(3)}) {
     const scene::Scene scene = scene_of(std::move(shape));
     for (const double budget : {0.0, 1e-3}) {
       builder::PipelineOptions options;
@@ -65,8 +65,8 @@ TEST(ScenePlan, GridNormalsAndUvsAreThoseOfTheBuild) {
 }
 
 TEST(ScenePlan, EstimatesAreWithinAThird) {
-  for (scene::Primitive shape : {scene::make_rock(24), scene::make_foliage(200), scene::make_crystal(3, 24),
-                                 scene::with_smooth_normals(scene::make_sphere(40))}) {
+  for (scene::Primitive shape : {lab::make_rock(24), lab::make_foliage(200), lab::make_crystal(3, 24),
+                                 lab::with_smooth_normals(lab::make_sphere(40))}) {
     const scene::Scene scene = scene_of(std::move(shape));
     const auto plan = plan_scene(scene, {});
     ASSERT_TRUE(plan);
@@ -83,7 +83,7 @@ TEST(ScenePlan, EstimatesAreWithinAThird) {
 }
 
 TEST(ScenePlan, WhatIsLeftOutHasASaving) {
-  scene::Scene scene = scene_of(scene::with_smooth_normals(scene::make_sphere(20)));
+  scene::Scene scene = scene_of(lab::with_smooth_normals(lab::make_sphere(20)));
   scene::Primitive& shape = scene.meshes[0].primitives[0];
   for (const Vec3d& p : shape.positions) shape.uvs[1].push_back({static_cast<float>(p.x), static_cast<float>(p.y)});
   const auto plan = plan_scene(scene, {});
@@ -98,7 +98,7 @@ TEST(ScenePlan, WhatIsLeftOutHasASaving) {
 }
 
 TEST(ScenePlan, TheAssetRecordsWhatRulesDecide) {
-  scene::Scene scene = scene_of(scene::make_plane(3));
+  scene::Scene scene = scene_of(lab::make_plane(3));
   scene.materials[0].alpha_mode = scene::AlphaMode::kBlend;
   builder::PipelineReport report;
   auto bytes = builder::build_lode(scene, {}, {}, report);
@@ -114,7 +114,7 @@ TEST(ScenePlan, TheAssetRecordsWhatRulesDecide) {
 TEST(ScenePlan, RefusesWhatTheBuildRefuses) {
   builder::PipelineOptions options;
   options.grid_step = 1e-12;
-  const auto plan = plan_scene(scene_of(scene::make_sphere(4)), options);
+  const auto plan = plan_scene(scene_of(lab::make_sphere(4)), options);
   ASSERT_FALSE(plan);
   EXPECT_EQ(plan.error().code, ErrorCode::kUnsupported);
 }
@@ -130,7 +130,7 @@ TEST(ScenePlan, AnEmptyMeshIsPassedThrough) {
 }
 
 TEST(CountWedges, TellsVerticesApartByWhatIsKept) {
-  const scene::SourceMesh facets = scene::as_mesh(scene::with_split_normals(scene::make_sphere(4)));
+  const scene::SourceMesh facets = lab::as_mesh(lab::with_split_normals(lab::make_sphere(4)));
   builder::AttributeLayout with_normals;
   with_normals.has_normal = true;
   std::vector<std::tuple<double, double, double>> positions;
@@ -142,7 +142,7 @@ TEST(CountWedges, TellsVerticesApartByWhatIsKept) {
 }
 
 TEST(Features, SayWhatBecomesOfEach) {
-  scene::Scene scene = scene_of(scene::make_plane(1));
+  scene::Scene scene = scene_of(lab::make_plane(1));
   scene.materials[0].alpha_mode = scene::AlphaMode::kBlend;
   scene.materials[0].double_sided = true;
   scene.materials[0].textures.push_back({.role = scene::TextureRole::kNormal});

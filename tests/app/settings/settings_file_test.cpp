@@ -8,8 +8,8 @@
 #include <gtest/gtest.h>
 
 #include "builder/builder.h"
+#include "lab/samples/samples.h"
 #include "run/read/asset.h"
-#include "scene/samples/samples.h"
 
 namespace meshlode::app {
 namespace {
@@ -145,8 +145,8 @@ TEST(MeshRules, ComeAfterTheirLayersWordsAndBeforeTheNextLayer) {
 }
 
 TEST(MeshRules, OptionsOfMeshesReachTheAsset) {
-  scene::Scene scene = scene::as_scene(scene::as_mesh(scene::make_sphere(8), "fine"));
-  scene.meshes.push_back(scene::as_mesh(scene::make_sphere(8), "coarse"));
+  scene::Scene scene = lab::as_scene(lab::as_mesh(lab::make_sphere(8), "fine"));
+  scene.meshes.push_back(lab::as_mesh(lab::make_sphere(8), "coarse"));
   scene.instances.emplace_back().mesh = MeshId(1U);
   const std::array layers{
       *parse_settings(R"({"meshes": {"coarse": {"position-error": 0.01, "error-tier": "qem"}}})", "f")};

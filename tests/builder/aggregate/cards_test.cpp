@@ -11,7 +11,7 @@
 #include "builder/aggregate/pieces.h"
 #include "builder/symmetric.h"
 #include "builder/prepare/prepare.h"
-#include "scene/samples/samples.h"
+#include "lab/samples/samples.h"
 
 namespace meshlode::builder {
 namespace {
@@ -22,7 +22,7 @@ double area_of(const Corners& c) {
 
 PreparedMesh prepared(scene::Primitive shape, const AttributeLayout& layout = {}) {
   shape.material = MaterialId(0U);
-  Result<PreparedMesh> mesh = prepare_mesh(scene::as_mesh(std::move(shape)), layout, {});
+  Result<PreparedMesh> mesh = prepare_mesh(lab::as_mesh(std::move(shape)), layout, {});
   EXPECT_TRUE(mesh.ok());
   return std::move(*mesh);
 }
@@ -88,7 +88,7 @@ TEST(PieceCards, AMaskTakesAwayItsShareAndMovesTheMiddle) {
 }
 
 TEST(PieceCards, ABoxIsThreeCardsThatShowWhatItShows) {
-  scene::Primitive box = scene::make_cube(1, 0.5);
+  scene::Primitive box = lab::make_cube(1, 0.5);
   for (Vec3d& p : box.positions) p = p * Vec3d(1.0, 2.0, 4.0);
   const PreparedMesh mesh = prepared(box);
   const std::vector<SourceMaterial> materials(1);
@@ -194,7 +194,7 @@ TEST(Blocks, AreEvenAndHoldEveryPointOnce) {
 }
 
 TEST(Thinning, KeepsTheAreaOfEveryBlock) {
-  const PreparedMesh mesh = prepared(scene::make_grass(200));
+  const PreparedMesh mesh = prepared(lab::make_grass(200));
   const std::vector<SourceMaterial> materials(1);
   const PieceCards cards = make_cards(mesh, find_pieces(mesh), materials);
   ASSERT_EQ(cards.cards.size(), 200U);

@@ -8,35 +8,35 @@
 
 #include "builder/aggregate/aggregate_choice.h"
 #include "builder/aggregate/coarse_materials.h"
-#include "scene/samples/samples.h"
+#include "lab/samples/samples.h"
 
 namespace meshlode::builder {
 namespace {
 
 bool is_aggregate(scene::Primitive shape, AggregateChoice choice = AggregateChoice::kAuto) {
-  return decide_aggregate(scene::as_mesh(std::move(shape)), {.choice = choice}).is_aggregate;
+  return decide_aggregate(lab::as_mesh(std::move(shape)), {.choice = choice}).is_aggregate;
 }
 
 TEST(AggregateChoice, IsOfManySmallLoosePieces) {
-  EXPECT_TRUE(is_aggregate(scene::make_grass(2000)));
-  EXPECT_TRUE(is_aggregate(scene::make_foliage(2000)));
-  EXPECT_TRUE(is_aggregate(scene::make_box_soup(400)));
-  EXPECT_FALSE(is_aggregate(scene::make_grass(100))) << "few";
-  EXPECT_FALSE(is_aggregate(scene::make_rock(16))) << "one";
-  EXPECT_FALSE(is_aggregate(scene::make_sphere(32)));
-  EXPECT_FALSE(is_aggregate(scene::make_grass(2000), AggregateChoice::kNever));
-  EXPECT_TRUE(is_aggregate(scene::make_grass(100), AggregateChoice::kAlways));
+  EXPECT_TRUE(is_aggregate(lab::make_grass(2000)));
+  EXPECT_TRUE(is_aggregate(lab::make_foliage(2000)));
+  EXPECT_TRUE(is_aggregate(lab::make_box_soup(400)));
+  EXPECT_FALSE(is_aggregate(lab::make_grass(100))) << "few";
+  EXPECT_FALSE(is_aggregate(lab::make_rock(16))) << "one";
+  EXPECT_FALSE(is_aggregate(lab::make_sphere(32)));
+  EXPECT_FALSE(is_aggregate(lab::make_grass(2000), AggregateChoice::kNever));
+  EXPECT_TRUE(is_aggregate(lab::make_grass(100), AggregateChoice::kAlways));
   const AggregateDecision large =
-      decide_aggregate(scene::as_mesh(scene::make_sphere(32)), {.choice = AggregateChoice::kAlways});
+      decide_aggregate(lab::as_mesh(lab::make_sphere(32)), {.choice = AggregateChoice::kAlways});
   EXPECT_FALSE(large.is_aggregate);
   EXPECT_NE(large.reason.find("12288 triangles"), std::string::npos) << large.reason;
   EXPECT_FALSE(decide_aggregate(scene::SourceMesh{}, {.choice = AggregateChoice::kAlways}).is_aggregate);
-  EXPECT_FALSE(decide_aggregate(scene::as_mesh(scene::make_grass(2000)),
-                                {.choice = AggregateChoice::kAlways, .keep_topology = true})
-                   .is_aggregate);
-  EXPECT_FALSE(decide_aggregate(scene::as_mesh(scene::make_grass(2000)),
-                                {.choice = AggregateChoice::kAlways, .lock_borders = true})
-                   .is_aggregate);
+  EXPECT_FALSE(
+      decide_aggregate(lab::as_mesh(lab::make_grass(2000)), {.choice = AggregateChoice::kAlways, .keep_topology = true})
+          .is_aggregate);
+  EXPECT_FALSE(
+      decide_aggregate(lab::as_mesh(lab::make_grass(2000)), {.choice = AggregateChoice::kAlways, .lock_borders = true})
+          .is_aggregate);
 }
 
 /// Primitives with materials 0, 1, 2 …
@@ -53,7 +53,7 @@ scene::SourceMesh mesh_of(std::vector<scene::Primitive> parts, const std::string
 using Most = std::vector<std::uint32_t>;
 
 TEST(AggregateParts, LeavesOfATreeAreOneAndItsTrunkIsNot) {
-  const scene::SourceMesh tree = mesh_of({scene::make_rock(16), scene::make_foliage(2000)});
+  const scene::SourceMesh tree = mesh_of({lab::make_rock(16), lab::make_foliage(2000)});
   const AggregateDecision parts = decide_aggregate(tree, {.choice = AggregateChoice::kAuto});
   EXPECT_TRUE(parts.is_aggregate);
   EXPECT_EQ(parts.most_triangles, (Most{0, 512}));
@@ -64,19 +64,19 @@ TEST(AggregateParts, LeavesOfATreeAreOneAndItsTrunkIsNot) {
   const AggregateDecision all = decide_aggregate(tree, {.choice = AggregateChoice::kAlways});
   EXPECT_EQ(all.most_triangles, (Most{0, 512}));
   EXPECT_FALSE(decide_aggregate(tree, {.choice = AggregateChoice::kAuto, .may_be_part = false}).is_aggregate);
-  EXPECT_TRUE(decide_aggregate(mesh_of({scene::make_grass(2000), scene::make_foliage(2000)}),
-                               {.choice = AggregateChoice::kAuto})
-                  .most_triangles.empty())
+  EXPECT_TRUE(
+      decide_aggregate(mesh_of({lab::make_grass(2000), lab::make_foliage(2000)}), {.choice = AggregateChoice::kAuto})
+          .most_triangles.empty())
       << "all of it";
   EXPECT_FALSE(
-      decide_aggregate(mesh_of({scene::make_rock(16), scene::make_foliage(200)}), {.choice = AggregateChoice::kAuto})
+      decide_aggregate(mesh_of({lab::make_rock(16), lab::make_foliage(200)}), {.choice = AggregateChoice::kAuto})
           .is_aggregate)
       << "few";
 }
 
 TEST(AggregateParts, OfOneMaterialSmallPiecesAreOneIfTheyAreMostOfIt) {
   const auto both = [](std::uint32_t leaves) {
-    scene::SourceMesh mesh = mesh_of({scene::make_rock(16), scene::make_foliage(leaves)});
+    scene::SourceMesh mesh = mesh_of({lab::make_rock(16), lab::make_foliage(leaves)});
     for (scene::Primitive& primitive : mesh.primitives) primitive.material = MaterialId(0U);
     return decide_aggregate(mesh, {.choice = AggregateChoice::kAuto});
   };
@@ -88,7 +88,7 @@ TEST(AggregateParts, AreFoundByName) {
   std::vector<scene::SceneMaterial> materials(2);
   materials[0].name = "bark";
   materials[1].name = "leaf green";
-  const scene::SourceMesh tree = mesh_of({scene::make_rock(16), scene::make_foliage(100)}, "oak");
+  const scene::SourceMesh tree = mesh_of({lab::make_rock(16), lab::make_foliage(100)}, "oak");
   const auto decide = [&](const char* names) {
     return decide_aggregate(tree, {.choice = AggregateChoice::kNamed, .names = names, .materials = materials});
   };
@@ -99,7 +99,7 @@ TEST(AggregateParts, AreFoundByName) {
   EXPECT_FALSE(decide("bark").is_aggregate);
   EXPECT_FALSE(decide("bark").reason.empty()) << "asked for, and too large";
   EXPECT_FALSE(decide("").is_aggregate);
-  scene::Scene scene = scene::as_scene(tree);
+  scene::Scene scene = lab::as_scene(tree);
   scene.materials = materials;
   EXPECT_EQ(find_unknown_names(scene, "elm,oak,,leaf*,be?ch"), (std::vector<std::string>{"elm", "be?ch"}));
 }
@@ -112,7 +112,7 @@ TEST(AggregateParts, WhatAMaskFarOutLetsThroughNobodyKnows) {
   const auto decide = [&](const scene::SourceMesh& mesh) {
     return decide_aggregate(mesh, {.choice = AggregateChoice::kAuto, .materials = materials});
   };
-  scene::SourceMesh meadow = mesh_of({scene::make_grass(2000), scene::make_foliage(2000), scene::make_grass(1000)});
+  scene::SourceMesh meadow = mesh_of({lab::make_grass(2000), lab::make_foliage(2000), lab::make_grass(1000)});
   EXPECT_TRUE(decide(meadow).is_aggregate);
   // It is enough that another primitive has such coordinates: one grid is stored for all.
   meadow.primitives[0].uvs[0].assign(meadow.primitives[0].positions.size(), Vec2f(0.0F, -1e8F));
@@ -125,13 +125,13 @@ TEST(AggregateParts, WhatAMaskFarOutLetsThroughNobodyKnows) {
   EXPECT_TRUE(decide(meadow).is_aggregate) << "no mask is asked there";
 
   materials[1].alpha_mode = scene::AlphaMode::kMask;
-  scene::SourceMesh tree = mesh_of({scene::make_rock(16), scene::make_foliage(2000), scene::make_grass(1000)});
+  scene::SourceMesh tree = mesh_of({lab::make_rock(16), lab::make_foliage(2000), lab::make_grass(1000)});
   tree.primitives[0].uvs[0].assign(tree.primitives[0].positions.size(), Vec2f(0.0F, -1e8F));
   EXPECT_EQ(decide(tree).most_triangles, (Most{0, 0, 512})) << "the grass is left";
 }
 
 TEST(AggregateParts, OfWhatIsLeftOutNothingRemains) {
-  const scene::SourceMesh tree = mesh_of({scene::make_rock(16), scene::make_foliage(2000)});
+  const scene::SourceMesh tree = mesh_of({lab::make_rock(16), lab::make_foliage(2000)});
   AggregateDecision decision = decide_aggregate(tree, {.choice = AggregateChoice::kAuto});
   ASSERT_EQ(decision.most_triangles, (Most{0, 512}));
   leave_out(tree, std::vector<std::uint8_t>{1, 0}, "the trunk is none", decision);
@@ -145,7 +145,7 @@ TEST(AggregateParts, OfWhatIsLeftOutNothingRemains) {
 }
 
 TEST(CoarseMaterials, AreOpaqueDoubleSidedAndInOneColor) {
-  scene::Scene scene = scene::as_scene(scene::as_mesh(scene::make_grass(10)));
+  scene::Scene scene = lab::as_scene(lab::as_mesh(lab::make_grass(10)));
   scene.document =
       R"({"materials":[{"name":"leaf","pbrMetallicRoughness":{"baseColorTexture":{"index":0},"roughnessFactor":0.5},
     "alphaMode":"MASK"}],"other":[1,2.5]})";

@@ -10,7 +10,7 @@
 
 #include "builder/aggregate/cut_meter.h"
 #include "builder/prepare/prepare.h"
-#include "scene/samples/samples.h"
+#include "lab/samples/samples.h"
 #include "support/sanitized.h"
 
 namespace meshlode::builder {
@@ -43,7 +43,7 @@ class CutMeterTest : public ::testing::Test {
         sheets.indices.insert(sheets.indices.end(), {first, first + 1, first + 2, first, first + 2, first + 3});
       }
     }
-    Result<PreparedMesh> mesh = prepare_mesh(scene::as_mesh(std::move(sheets)), {}, {});
+    Result<PreparedMesh> mesh = prepare_mesh(lab::as_mesh(std::move(sheets)), {}, {});
     EXPECT_TRUE(mesh.ok());
     return std::move(*mesh);
   }

@@ -13,7 +13,7 @@
 #include "builder/aggregate/half_pixels.h"
 #include "builder/aggregate/settle.h"
 #include "builder/prepare/prepare.h"
-#include "scene/samples/samples.h"
+#include "lab/samples/samples.h"
 
 namespace meshlode::builder {
 namespace {
@@ -171,7 +171,7 @@ struct Pieces {
   explicit Pieces(scene::Primitive shape) {
     shape.normals.clear();
     shape.uvs[0].clear();
-    mesh = *prepare_mesh(scene::as_mesh(std::move(shape)), {}, {});
+    mesh = *prepare_mesh(lab::as_mesh(std::move(shape)), {}, {});
     is_closed.assign(mesh.triangles.size(), 0);
     all.first = {0, static_cast<std::uint32_t>(mesh.triangles.size())};
     for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) all.items.push_back(t);
@@ -243,7 +243,7 @@ WayToSettle fitted(const Pieces& pieces, WayToSettle way) {
 }
 
 TEST(Settling, TakesAFifthOffTheNoiseAndLeavesAreas) {
-  const Pieces pieces(scene::make_foliage(1500));
+  const Pieces pieces(lab::make_foliage(1500));
   const SourceSurface source(pieces.mesh, pieces.materials, pieces.is_closed);
   const SourcePictures pictures(source, pieces.frame, pieces.all, pieces.frame.longest / 55.0);
   for (std::size_t s = 1; s < pictures.sizes().size(); ++s)
@@ -272,7 +272,7 @@ TEST(Settling, TakesAFifthOffTheNoiseAndLeavesAreas) {
 }
 
 TEST(Settling, TakesTheWayWithLessNoise) {
-  const Pieces pieces(scene::make_foliage(1500));
+  const Pieces pieces(lab::make_foliage(1500));
   const SourceSurface source(pieces.mesh, pieces.materials, pieces.is_closed);
   const SourcePictures pictures(source, pieces.frame, pieces.all, pieces.frame.longest / 55.0);
   // Of half the area a part is missing, wherever it is.
@@ -285,7 +285,7 @@ TEST(Settling, TakesTheWayWithLessNoise) {
 }
 
 TEST(Settling, WhatCoversNothingStaysFinite) {
-  const Pieces pieces(scene::scaled(scene::make_foliage(40), 1e-6));
+  const Pieces pieces(lab::scaled(lab::make_foliage(40), 1e-6));
   const SourceSurface source(pieces.mesh, pieces.materials, pieces.is_closed);
   const SourcePictures pictures(source, pieces.frame, pieces.all, pieces.frame.longest / 55.0);
   WayToSettle way = some_cards(pieces, 8);

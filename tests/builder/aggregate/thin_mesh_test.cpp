@@ -8,7 +8,7 @@
 
 #include "builder/aggregate/thin_mesh.h"
 #include "builder/prepare/prepare.h"
-#include "scene/samples/samples.h"
+#include "lab/samples/samples.h"
 
 namespace meshlode::builder {
 namespace {
@@ -16,14 +16,14 @@ namespace {
 ThinMesh thin(scene::Primitive shape, std::uint32_t leaf_triangles = 256) {
   shape.normals.clear();
   shape.uvs[0].clear();
-  Result<PreparedMesh> mesh = prepare_mesh(scene::as_mesh(std::move(shape)), {}, {});
+  Result<PreparedMesh> mesh = prepare_mesh(lab::as_mesh(std::move(shape)), {}, {});
   EXPECT_TRUE(mesh.ok()) << mesh.error().message();
   const std::vector<SourceMaterial> materials(1);
   return thin_mesh(*mesh, materials, {.leaf_triangles = leaf_triangles});
 }
 
 TEST(ThinMesh, LevelsCoverAllLeavesWithEverFewerTriangles) {
-  const ThinMesh mesh = thin(scene::make_grass(1000));
+  const ThinMesh mesh = thin(lab::make_grass(1000));
   EXPECT_EQ(mesh.leaf_triangles.items.size(), 2000U);
   std::vector<std::uint8_t> is_there(2000, 0);
   for (const std::uint32_t t : mesh.leaf_triangles.items) ++is_there[t];
@@ -52,7 +52,7 @@ TEST(ThinMesh, LevelsCoverAllLeavesWithEverFewerTriangles) {
 
 TEST(ThinMesh, SingleTrianglesAreThinnedOutFromTheFirstLevelOn) {
   // A card each is no level: nothing would be fewer.
-  scene::Primitive blades = scene::make_grass(2000);
+  scene::Primitive blades = lab::make_grass(2000);
   blades.indices.clear();
   for (std::uint32_t v = 0; v + 3 < blades.positions.size(); v += 4)
     blades.indices.insert(blades.indices.end(), {v, v + 1, v + 2});
@@ -80,11 +80,11 @@ TEST(ThinMesh, IsTheSameForAnyThreadCountAndAtAnyScale) {
   const auto with_threads = [](int threads) {
     ThinMesh mesh;
     tbb::task_arena arena(threads);
-    arena.execute([&] { mesh = thin(scene::make_box_soup(120)); });
+    arena.execute([&] { mesh = thin(lab::make_box_soup(120)); });
     return mesh;
   };
   const ThinMesh one = with_threads(1), four = with_threads(4);
-  const ThinMesh large = thin(scene::scaled(scene::make_box_soup(120), 1024.0));
+  const ThinMesh large = thin(lab::scaled(lab::make_box_soup(120), 1024.0));
   ASSERT_EQ(one.levels.size(), four.levels.size());
   ASSERT_EQ(one.levels.size(), large.levels.size());
   for (std::size_t l = 0; l < one.levels.size(); ++l) {
@@ -99,7 +99,7 @@ TEST(ThinMesh, IsTheSameForAnyThreadCountAndAtAnyScale) {
 
 TEST(ThinMesh, FewCardsAreFivePixelsWideAtMost) {
   // A soup is full: however large its cards are, each pixel is covered.
-  const ThinMesh mesh = thin(scene::make_box_soup(2000));
+  const ThinMesh mesh = thin(lab::make_box_soup(2000));
   std::size_t seen = 0;
   for (const std::vector<ThinGroup>& level : mesh.levels) {
     const ThinGroup& group = level.front();
@@ -115,7 +115,7 @@ TEST(ThinMesh, FewCardsAreFivePixelsWideAtMost) {
 
 TEST(ThinMesh, OddPiecesEndInLevelsOrInNone) {
   // All in one place; in one line; flat on the ground; one piece; far apart and tiny; huge.
-  scene::Primitive heap, flat = scene::make_grass(300), line = scene::make_grass(300), dust = scene::make_grass(300);
+  scene::Primitive heap, flat = lab::make_grass(300), line = lab::make_grass(300), dust = lab::make_grass(300);
   for (int k = 0; k < 300; ++k) {
     const auto first = static_cast<std::uint32_t>(heap.positions.size());
     heap.positions.insert(heap.positions.end(), {{0, 0, 0}, {1.0 + 1e-3 * k, 0, 0}, {0, 1, 0}});
@@ -128,8 +128,8 @@ TEST(ThinMesh, OddPiecesEndInLevelsOrInNone) {
     dust.positions[v] = 1e6 * middle + 1e-3 * (dust.positions[v] - middle);
   }
   for (const scene::Primitive& shape :
-       {heap, flat, line, dust, scene::make_grass(1), scene::make_loose_pieces(400),
-        scene::scaled(scene::make_grass(300), 1e9), scene::scaled(scene::make_grass(300), 1e-6)}) {
+       {heap, flat, line, dust, lab::make_grass(1), lab::make_loose_pieces(400), lab::scaled(lab::make_grass(300), 1e9),
+        lab::scaled(lab::make_grass(300), 1e-6)}) {
     const ThinMesh mesh = thin(shape);
     for (const std::vector<ThinGroup>& level : mesh.levels) {
       for (const ThinGroup& group : level) {

@@ -9,7 +9,7 @@
 #include "builder/cluster/adjacency.h"
 #include "builder/cluster/satellites.h"
 #include "builder/prepare/prepare.h"
-#include "scene/samples/samples.h"
+#include "lab/samples/samples.h"
 
 namespace meshlode::builder {
 namespace {
@@ -17,7 +17,7 @@ namespace {
 PreparedMesh prepare(const scene::Primitive& shape, bool normals = false) {
   AttributeLayout layout;
   layout.has_normal = normals;
-  return *prepare_mesh(scene::as_mesh(shape), layout, {});
+  return *prepare_mesh(lab::as_mesh(shape), layout, {});
 }
 
 Clustering cluster(const PreparedMesh& mesh, const ClusterCaps& caps = {}) {
@@ -45,10 +45,9 @@ TEST(Cluster, CapsHoldOnEveryShape) {
   fan.positions.push_back({0, 0, 1});
   for (int i = 0; i < 10000; ++i) fan.positions.push_back({i * 1e-3, (i % 97) * 0.01, 0});
   for (std::uint32_t i = 1; i < 10000; ++i) fan.indices.insert(fan.indices.end(), {0, i, i + 1});
-  const scene::Primitive shapes[] = {scene::make_sphere(30),        scene::make_box_soup(300),
-                                     scene::make_loose_pieces(500), scene::make_slivers(400),
-                                     scene::make_three_sheets(20),  scene::make_double_cone(200),
-                                     scene::make_moebius(60, 6),    fan};
+  const scene::Primitive shapes[] = {
+      lab::make_sphere(30),       lab::make_box_soup(300),    lab::make_loose_pieces(500), lab::make_slivers(400),
+      lab::make_three_sheets(20), lab::make_double_cone(200), lab::make_moebius(60, 6),    fan};
   for (const scene::Primitive& shape : shapes) {
     const PreparedMesh mesh = prepare(shape);
     expect_caps(mesh, cluster(mesh), {});
@@ -56,7 +55,7 @@ TEST(Cluster, CapsHoldOnEveryShape) {
 }
 
 TEST(Cluster, TheVertexCapHoldsWhereEveryCornerIsAVertex) {
-  const PreparedMesh mesh = prepare(scene::with_split_normals(scene::make_sphere(20)), true);
+  const PreparedMesh mesh = prepare(lab::with_split_normals(lab::make_sphere(20)), true);
   const Clustering clustering = cluster(mesh);
   expect_caps(mesh, clustering, {});
   const double per_cluster = static_cast<double>(mesh.triangles.size()) / clustering.count;
@@ -64,7 +63,7 @@ TEST(Cluster, TheVertexCapHoldsWhereEveryCornerIsAVertex) {
 }
 
 TEST(Cluster, SmallCapsHoldToo) {
-  const PreparedMesh mesh = prepare(scene::make_torus(30, 20));
+  const PreparedMesh mesh = prepare(lab::make_torus(30, 20));
   ClusterCaps caps;
   caps.max_triangles = 7;
   caps.max_vertices = 8;
@@ -73,22 +72,22 @@ TEST(Cluster, SmallCapsHoldToo) {
 }
 
 TEST(Cluster, ClustersAreFull) {
-  const PreparedMesh mesh = prepare(scene::make_sphere(60));  // 43,200 triangles: several chunks
+  const PreparedMesh mesh = prepare(lab::make_sphere(60));  // 43,200 triangles: several chunks
   const Clustering clustering = cluster(mesh);
   expect_caps(mesh, clustering, {});
   EXPECT_GE(static_cast<double>(mesh.triangles.size()) / (128.0 * clustering.count), 0.97);
 }
 
 TEST(Cluster, WhatFitsOneClusterIsOne) {
-  const PreparedMesh mesh = prepare(scene::make_plane(8));
+  const PreparedMesh mesh = prepare(lab::make_plane(8));
   ASSERT_EQ(mesh.triangles.size(), 128U);
   EXPECT_EQ(cluster(mesh).count, 1U);
 }
 
 TEST(Cluster, LoosePiecesNearEachOtherStayTogether) {
   // Two boxes of space with 600 loose pieces each, far apart: no cluster may hold pieces of both but at most one.
-  scene::Primitive shape = scene::make_loose_pieces(600, 3);
-  const scene::Primitive other = scene::make_loose_pieces(600, 4);
+  scene::Primitive shape = lab::make_loose_pieces(600, 3);
+  const scene::Primitive other = lab::make_loose_pieces(600, 4);
   const auto base = static_cast<std::uint32_t>(shape.positions.size());
   for (const Vec3d& p : other.positions) shape.positions.push_back(p + Vec3d(1000.0, 0, 0));
   for (const std::uint32_t i : other.indices) shape.indices.push_back(base + i);
@@ -103,7 +102,7 @@ TEST(Cluster, LoosePiecesNearEachOtherStayTogether) {
 
 /// A sphere with debris beside it: triangles that the grid collapsed, and pieces of one to three triangles.
 TEST(Cluster, WhatCoversLittleIsWhereItsSurfaceIs) {
-  scene::Primitive shape = scene::make_sphere(40);
+  scene::Primitive shape = lab::make_sphere(40);
   const std::size_t surface = shape.indices.size() / 3;
   const std::size_t vertices = shape.positions.size();
   for (std::size_t i = 0; i < vertices; i += 21) {

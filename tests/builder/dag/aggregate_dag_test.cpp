@@ -13,7 +13,7 @@
 #include <gtest/gtest.h>
 
 #include "builder/prepare/prepare.h"
-#include "scene/samples/samples.h"
+#include "lab/samples/samples.h"
 
 namespace meshlode::builder {
 namespace {
@@ -23,12 +23,12 @@ using Edge = std::pair<Place, Place>;
 
 /// A field of blades that are some steps of the grid wide.
 LodDag thinned_grass(const PlaceSet& others, std::uint32_t blades = 1000, double step = 0.004) {
-  scene::Primitive grass = scene::make_grass(blades);
+  scene::Primitive grass = lab::make_grass(blades);
   grass.normals.clear();
   grass.uvs[0].clear();
   PrepareOptions coarse;
   coarse.grid_step = step;
-  Result<PreparedMesh> mesh = prepare_mesh(scene::as_mesh(std::move(grass)), {}, coarse);
+  Result<PreparedMesh> mesh = prepare_mesh(lab::as_mesh(std::move(grass)), {}, coarse);
   EXPECT_TRUE(mesh.ok()) << mesh.error().message();
   const std::vector<SourceMaterial> materials(1);
   Result<LodDag> dag = build_aggregate_dag_and_free(*mesh, materials, {}, others);
@@ -122,7 +122,7 @@ TEST(AggregateDag, GroupsShareNoEdgeButWithWhatTheyReplace) {
 }
 
 TEST(AggregateDag, NoGroupTakesMoreThanAPageThoughAPieceDoes) {
-  scene::Primitive grass = scene::make_grass(1000);
+  scene::Primitive grass = lab::make_grass(1000);
   grass.normals.clear();
   grass.uvs[0].clear();
   constexpr std::uint32_t kSide = 100;
@@ -138,7 +138,7 @@ TEST(AggregateDag, NoGroupTakesMoreThanAPageThoughAPieceDoes) {
         grass.indices.push_back(corner);
     }
   }
-  Result<PreparedMesh> mesh = prepare_mesh(scene::as_mesh(std::move(grass)), {}, {});
+  Result<PreparedMesh> mesh = prepare_mesh(lab::as_mesh(std::move(grass)), {}, {});
   ASSERT_TRUE(mesh.ok()) << mesh.error().message();
   const std::size_t triangles = mesh->triangles.size();
   DagOptions options;

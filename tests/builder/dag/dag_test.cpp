@@ -12,7 +12,7 @@
 
 #include "builder/plan/plan.h"
 #include "builder/prepare/prepare.h"
-#include "scene/samples/samples.h"
+#include "lab/samples/samples.h"
 #include "support/border_chain.h"
 
 namespace meshlode::builder {
@@ -26,7 +26,7 @@ struct Built {
 };
 
 Built build(const scene::Primitive& shape, const DagOptions& options = {}) {
-  const scene::SourceMesh source = scene::as_mesh(shape);
+  const scene::SourceMesh source = lab::as_mesh(shape);
   const MeshPlan plan = plan_mesh(source, {}, {AttributeChoice::kAll}, "m");
   Built built{*prepare_mesh(source, plan.layout, {}), {}};
   Result<LodDag> dag = build_dag(built.mesh, options);
@@ -145,9 +145,9 @@ std::size_t count_roots(const LodDag& dag) {
 }
 
 TEST(Dag, SmoothShapesEndInOneRoot) {
-  const scene::Primitive shapes[] = {scene::make_sphere(24), scene::make_torus(60, 30),
-                                     scene::make_plane(40),  scene::with_smooth_normals(scene::make_sphere(20)),
-                                     scene::make_rock(16),   scene::make_terrain(48, 48)};
+  const scene::Primitive shapes[] = {lab::make_sphere(24), lab::make_torus(60, 30),
+                                     lab::make_plane(40),  lab::with_smooth_normals(lab::make_sphere(20)),
+                                     lab::make_rock(16),   lab::make_terrain(48, 48)};
   for (const scene::Primitive& shape : shapes) {
     const Built built = build(shape);
     expect_sound(built);
@@ -158,23 +158,23 @@ TEST(Dag, SmoothShapesEndInOneRoot) {
 }
 
 TEST(Dag, HardShapesAreSound) {
-  const scene::Primitive shapes[] = {scene::make_box_soup(60),
-                                     scene::make_loose_pieces(400),
-                                     scene::make_blade(40),
-                                     scene::make_three_sheets(24),
-                                     scene::make_double_cone(300),
-                                     scene::make_slivers(600),
-                                     scene::make_duplicates(12),
-                                     scene::make_zero_areas(12),
-                                     scene::make_moebius(90, 8),
-                                     scene::make_far_plane(24),
-                                     scene::scaled(scene::make_torus(30, 20), 1e-6),
-                                     scene::scaled(scene::make_torus(30, 20), 1e9)};
+  const scene::Primitive shapes[] = {lab::make_box_soup(60),
+                                     lab::make_loose_pieces(400),
+                                     lab::make_blade(40),
+                                     lab::make_three_sheets(24),
+                                     lab::make_double_cone(300),
+                                     lab::make_slivers(600),
+                                     lab::make_duplicates(12),
+                                     lab::make_zero_areas(12),
+                                     lab::make_moebius(90, 8),
+                                     lab::make_far_plane(24),
+                                     lab::scaled(lab::make_torus(30, 20), 1e-6),
+                                     lab::scaled(lab::make_torus(30, 20), 1e9)};
   for (const scene::Primitive& shape : shapes) expect_sound(build(shape));
 }
 
 TEST(Dag, FacetedShapesEndInOneRoot) {
-  scene::Primitive shape = scene::with_split_normals(scene::make_sphere(20));
+  scene::Primitive shape = lab::with_split_normals(lab::make_sphere(20));
   for (const bool keep : {false, true}) {
     if (keep) shape.normals[0] = glm::normalize(shape.normals[0] + Vec3f(0.4F, 0.2F, 0.1F));  // now they must be stored
     const Built built = build(shape);
@@ -202,7 +202,7 @@ TEST(Dag, AnEmptyMeshHasNoGroups) {
 }
 
 TEST(Dag, MaterialsOfOneMeshShareOneDagWithoutCracks) {
-  scene::SourceMesh source = scene::as_mesh(scene::make_sphere(20));
+  scene::SourceMesh source = lab::as_mesh(lab::make_sphere(20));
   scene::Primitive upper = source.primitives[0];
   scene::Primitive lower = upper;
   upper.indices.clear();
@@ -228,7 +228,7 @@ TEST(Dag, MaterialsOfOneMeshShareOneDagWithoutCracks) {
 }
 
 TEST(Dag, ThreadsChangeNothing) {
-  const scene::Primitive shape = scene::make_rock(24);
+  const scene::Primitive shape = lab::make_rock(24);
   std::vector<LodDag> dags;
   for (const std::size_t threads : {1U, 2U, 4U}) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
@@ -245,7 +245,7 @@ TEST(Dag, ItCanBeCancelled) {
   DagOptions options;
   int calls = 0;
   options.on_level = [&](std::uint32_t, std::uint64_t) { return ++calls < 3; };
-  const PreparedMesh mesh = *prepare_mesh(scene::as_mesh(scene::make_sphere(20)), {}, {});
+  const PreparedMesh mesh = *prepare_mesh(lab::as_mesh(lab::make_sphere(20)), {}, {});
   const Result<LodDag> dag = build_dag(mesh, options);
   ASSERT_FALSE(dag.ok());
   EXPECT_EQ(dag.error().code, ErrorCode::kBuildFailed);
@@ -255,7 +255,7 @@ TEST(Dag, ItCanBeCancelled) {
 TEST(Dag, FoliageAndSoupsKeepTheirAreaAtEveryLevel) {
   DagOptions options;
   options.simplify.keep_area = true;
-  for (const scene::Primitive& shape : {scene::make_box_soup(1500), scene::make_foliage(1200)}) {
+  for (const scene::Primitive& shape : {lab::make_box_soup(1500), lab::make_foliage(1200)}) {
     const Built built = build(shape, options);
     expect_sound(built);
     EXPECT_LE(count_roots(built.dag), 4U);
@@ -277,7 +277,7 @@ TEST(Dag, GroupsStayWithinTheirBytes) {
   DagOptions options;
   options.max_group_bytes = 128 * 6;
   options.cluster_bytes = [](std::uint32_t, std::uint32_t triangles, std::uint32_t) { return triangles; };
-  const Built built = build(scene::make_sphere(24), options);
+  const Built built = build(lab::make_sphere(24), options);
   expect_sound(built);
   for (const DagGroup& group : built.dag.groups) {
     std::uint32_t bytes = 0;

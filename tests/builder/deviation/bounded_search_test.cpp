@@ -105,7 +105,7 @@ TEST(BoundedSearch, LooksForNothingWithinTheMargin) {
 // A wall of the source that a cut has in other triangles: none is near to all of it, but together they are.
 TEST(BoundedSearch, DividesAlongTheEdgesOfWhatCoversItTogether) {
   constexpr double kHeight = 1e-5, kKnown = 1e-4;
-  const judge::Surface surface = test::as_surface(scene::make_plane(12, 0.5));
+  const judge::Surface surface = test::as_surface(lab::make_plane(12, 0.5));
   const SurfaceTree tree = tree_over(surface);
   const Corners corners{Vec3d(-0.47, kHeight, -0.48), Vec3d(0.47, kHeight, -0.39), Vec3d(-0.19, kHeight, 0.43)};
   BoundedSearch search(tree, 1.0, kKnown);

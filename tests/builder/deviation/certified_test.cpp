@@ -24,9 +24,9 @@ CertifiedGroup certify_one_step(const judge::Surface& fine, const judge::Surface
 
 TEST(Certified, AShiftedPlaneIsOffByItsShift) {
   for (const double scale : {1e-6, 1.0, 1e9}) {
-    const judge::Surface plane = test::transformed(test::as_surface(scene::make_plane(6)), scale, Vec3d(0.0));
+    const judge::Surface plane = test::transformed(test::as_surface(lab::make_plane(6)), scale, Vec3d(0.0));
     const judge::Surface shifted =
-        test::transformed(test::as_surface(scene::make_plane(4)), scale, Vec3d(0.0, 0.25 * scale, 0.0));
+        test::transformed(test::as_surface(lab::make_plane(4)), scale, Vec3d(0.0, 0.25 * scale, 0.0));
     const double bound = certify_one_step(plane, shifted).deviation;
     EXPECT_GE(bound, 0.25 * scale);
     EXPECT_LE(bound, 0.27 * scale);
@@ -34,7 +34,7 @@ TEST(Certified, AShiftedPlaneIsOffByItsShift) {
 }
 
 TEST(Certified, TheSameSurfaceIsAsGoodAsItself) {
-  const judge::Surface rock = test::as_surface(scene::make_rock(8));
+  const judge::Surface rock = test::as_surface(lab::make_rock(8));
   EXPECT_LE(certify_one_step(rock, rock).deviation, 1e-8);
 }
 
@@ -68,9 +68,9 @@ TEST(Certified, HoldsAlongAChainOfLevelsForEveryPart) {
     judge::Surface fine;
     std::vector<judge::Surface> levels;
     for (const std::uint32_t n : {16U, 11U, 8U, 5U, 3U}) {
-      judge::Surface level = test::as_surface(round % 3 == 0   ? scene::make_sphere(n)
-                                              : round % 3 == 1 ? scene::make_torus(3 * n, 2 * n)
-                                                               : scene::make_terrain(2 * n, 2 * n));
+      judge::Surface level = test::as_surface(round % 3 == 0   ? lab::make_sphere(n)
+                                              : round % 3 == 1 ? lab::make_torus(3 * n, 2 * n)
+                                                               : lab::make_terrain(2 * n, 2 * n));
       for (Vec3d& p : level.positions) {
         p += 0.05 / n * Vec3d(random.signed_unit(), random.signed_unit(), random.signed_unit());
       }
@@ -100,7 +100,7 @@ TEST(Certified, HoldsAlongAChainOfLevelsForEveryPart) {
 
 TEST(Certified, SourcePointsAreNearTheTrianglesThatTheyWereHandedTo) {
   // Every source point must be within its bound of some triangle: with the smallest bounds that are claimed.
-  const judge::Surface fine = test::as_surface(scene::make_rock(12)), coarse = test::as_surface(scene::make_rock(4));
+  const judge::Surface fine = test::as_surface(lab::make_rock(12)), coarse = test::as_surface(lab::make_rock(4));
   const CertifiedGroup certified = certify_one_step(fine, coarse);
   Random random(23);
   for (int i = 0; i < 3000; ++i) {
@@ -128,14 +128,13 @@ TEST(Certified, TheGridsOwnShiftIsInTheFirstBound) {
 
 TEST(Certified, AnUnderstatedBoundIsFound) {
   // The tests above can fail: with the bounds halved, sampling finds points beyond them.
-  const judge::Surface fine = test::as_surface(scene::make_sphere(12)),
-                       coarse = test::as_surface(scene::make_sphere(3));
+  const judge::Surface fine = test::as_surface(lab::make_sphere(12)), coarse = test::as_surface(lab::make_sphere(3));
   EXPECT_LT(0.5 * certify_one_step(fine, coarse).deviation, test::dense_truth(fine, coarse, 5000));
 }
 
 TEST(Certified, WhatIsNotANumberIsNoBound) {
   const double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
-  const judge::Surface fine = test::as_surface(scene::make_sphere(2)), coarse = test::as_surface(scene::make_sphere(1));
+  const judge::Surface fine = test::as_surface(lab::make_sphere(2)), coarse = test::as_surface(lab::make_sphere(1));
   // From below: one finer triangle whose bounds are not known.
   for (const double unknown : {nan, infinity}) {
     std::vector<TriangleBound> bounds = no_bounds(fine);
@@ -152,7 +151,7 @@ TEST(Certified, WhatIsNotANumberIsNoBound) {
 }
 
 TEST(Certified, NothingLeftIsInfinitelyFar) {
-  const judge::Surface fine = test::as_surface(scene::make_sphere(2));
+  const judge::Surface fine = test::as_surface(lab::make_sphere(2));
   EXPECT_EQ(certify_one_step(fine, {}).deviation, std::numeric_limits<double>::infinity());
 }
 

@@ -20,7 +20,7 @@ namespace {
 using test::Random;
 
 TEST(Measured, AShiftedPlaneIsOffByItsShift) {
-  const judge::Surface plane = test::as_surface(scene::make_plane(12));
+  const judge::Surface plane = test::as_surface(lab::make_plane(12));
   for (const double scale : {1e-6, 1.0, 1e9}) {
     const judge::Surface fine = test::transformed(plane, scale, Vec3d(0.0));
     const judge::Surface shifted = test::transformed(plane, scale, Vec3d(0.0, 0.125 * scale, 0.0));
@@ -30,8 +30,8 @@ TEST(Measured, AShiftedPlaneIsOffByItsShift) {
 }
 
 TEST(Measured, ACoarseSphereIsOffByItsSagitta) {
-  const judge::Surface fine = test::as_surface(scene::make_sphere(40));
-  const judge::Surface coarse = test::as_surface(scene::make_sphere(3));
+  const judge::Surface fine = test::as_surface(lab::make_sphere(40));
+  const judge::Surface coarse = test::as_surface(lab::make_sphere(3));
   // A chord plane at distance h from the centre is 1 - h from the sphere: the largest triangle has the smallest h.
   double lowest = 1.0;
   for (const auto& t : coarse.triangles) {
@@ -45,20 +45,20 @@ TEST(Measured, ACoarseSphereIsOffByItsSagitta) {
 }
 
 TEST(Measured, ARemovedSpikeCostsItsHeight) {
-  judge::Surface fine = test::as_surface(scene::make_plane(10));
-  const judge::Surface coarse = test::as_surface(scene::make_plane(5));
+  judge::Surface fine = test::as_surface(lab::make_plane(10));
+  const judge::Surface coarse = test::as_surface(lab::make_plane(5));
   fine.positions[60].y += 0.375;  // an inner vertex
   EXPECT_NEAR(test::measure_one_step(fine, coarse).deviation, 0.375, 1e-12);
 }
 
 TEST(Measured, AClosedHoleCostsItsRadius) {
   // A square with a square hole, covered by a square without: the middle of the hole is half its width from the rim.
-  judge::Surface fine = test::as_surface(scene::make_plane(12));
+  judge::Surface fine = test::as_surface(lab::make_plane(12));
   std::erase_if(fine.triangles, [&](const auto& t) {
     const Vec3d c = (fine.positions[t[0]] + fine.positions[t[1]] + fine.positions[t[2]]) / 3.0;
     return std::abs(c.x) < 0.5 && std::abs(c.z) < 0.5;
   });
-  const judge::Surface coarse = test::as_surface(scene::make_plane(1));
+  const judge::Surface coarse = test::as_surface(lab::make_plane(1));
   const double measured = test::measure_one_step(fine, coarse).deviation;
   EXPECT_LE(measured, 0.5 + 1e-12);
   EXPECT_GE(measured, 0.5 * 0.95);
@@ -82,9 +82,9 @@ TEST(Measured, AClosedSliverOfAHoleCostsItsRadius) {
 }
 
 TEST(Measured, ARemovedPieceIsAsFarAsItWas) {
-  judge::Surface fine = test::as_surface(scene::make_sphere(4));
+  judge::Surface fine = test::as_surface(lab::make_sphere(4));
   const judge::Surface coarse = fine;
-  const judge::Surface speck = test::transformed(test::as_surface(scene::make_cube(1)), 1e-3, Vec3d(3.0, 0.0, 0.0));
+  const judge::Surface speck = test::transformed(test::as_surface(lab::make_cube(1)), 1e-3, Vec3d(3.0, 0.0, 0.0));
   const auto base = static_cast<std::uint32_t>(fine.positions.size());
   fine.positions.insert(fine.positions.end(), speck.positions.begin(), speck.positions.end());
   for (const auto& t : speck.triangles) fine.triangles.push_back({base + t[0], base + t[1], base + t[2]});
@@ -104,8 +104,7 @@ TEST(Measured, LargeSourceTrianglesAreSeenInside) {
 
 TEST(Measured, WhatIsOfNoUseIsToldAsFarAsItIsKnown) {
   // Nothing reaches what is asked for: the deviation is what was found, not what was asked, and not a running maximum.
-  const judge::Surface fine = test::as_surface(scene::make_sphere(12)),
-                       coarse = test::as_surface(scene::make_sphere(6));
+  const judge::Surface fine = test::as_surface(lab::make_sphere(12)), coarse = test::as_surface(lab::make_sphere(6));
   const double truth = test::dense_truth(fine, coarse);
   DeviationTierOptions options;
   options.floor = 0.7;
@@ -142,10 +141,10 @@ TEST(Measured, ASoupIsSearchedToItsEndWhereTheGroupIsAllOfIt) {
 TEST(Measured, OfALargeSourceTheWholeIsSearchedFromAbove) {
   // A quarter of a million triangles, no sample to lead to the one vertex that stands out, and as little effort as a
   // group among many gets: what is found is found from above.
-  judge::Surface fine = test::as_surface(scene::make_plane(363));
+  judge::Surface fine = test::as_surface(lab::make_plane(363));
   ASSERT_GT(fine.triangles.size(), 262144U);
   fine.positions[91234].y += 0.0625;
-  const judge::Surface coarse = test::as_surface(scene::make_plane(3));
+  const judge::Surface coarse = test::as_surface(lab::make_plane(3));
   const SourceTree source(fine.positions, fine.triangles);
   DeviationTierOptions options;
   options.finer = test::as_group(coarse);
@@ -155,7 +154,7 @@ TEST(Measured, OfALargeSourceTheWholeIsSearchedFromAbove) {
 
 TEST(Measured, EveryVertexIsASampleOfTheFirstTriangleThatHasIt) {
   // More triangles than are counted at a time, a vertex that none has, a triangle with one twice, and one that is long.
-  judge::Surface surface = test::as_surface(scene::make_plane(70));
+  judge::Surface surface = test::as_surface(lab::make_plane(70));
   ASSERT_GT(surface.triangles.size(), 2 * 4096U);
   surface.positions.emplace_back(9.0, 9.0, 9.0);
   surface.triangles[5][1] = surface.triangles[5][0];
@@ -194,7 +193,7 @@ TEST(Measured, APeakBetweenNeedlesIsFoundThoughNoPointNearItTells) {
       for (const Vec3d& p : {at, at + along, at + 0.5 * along + Vec3d(0.0, 1e-5, 0.0)}) fine.positions.push_back(p);
       fine.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
     }
-    const judge::Surface coarse = test::as_surface(scene::make_plane(2));
+    const judge::Surface coarse = test::as_surface(lab::make_plane(2));
     DeviationTierOptions options;
     options.extra_effort = 3000;
     options.is_whole = true;
@@ -314,7 +313,7 @@ TEST(Measured, BoundsLeaveNothingBeyond) {
 }
 
 TEST(Measured, NothingLeftIsInfinitelyFar) {
-  const judge::Surface fine = test::as_surface(scene::make_sphere(2));
+  const judge::Surface fine = test::as_surface(lab::make_sphere(2));
   EXPECT_EQ(test::measure_one_step(fine, {}).deviation, std::numeric_limits<double>::infinity());
 }
 
@@ -323,7 +322,7 @@ TEST(Measured, DegenerateTrianglesAreSegmentsAndPoints) {
   const judge::Surface point{{{0, 3, 0}}, {{0, 0, 0}}};
   EXPECT_NEAR(test::measure_one_step(fine, point).deviation, std::sqrt(13.0), 1e-12);
   EXPECT_NEAR(test::measure_one_step(point, fine).deviation, std::sqrt(13.0), 1e-12);
-  EXPECT_TRUE(std::isfinite(test::measure_one_step(test::as_surface(scene::make_zero_areas(6)), point).deviation));
+  EXPECT_TRUE(std::isfinite(test::measure_one_step(test::as_surface(lab::make_zero_areas(6)), point).deviation));
 }
 
 TEST(Measured, RandomSimplificationsAreWithinFivePercentOfTheDenseTruth) {
@@ -334,10 +333,10 @@ TEST(Measured, RandomSimplificationsAreWithinFivePercentOfTheDenseTruth) {
     scene::Primitive simple;
     const auto n = static_cast<std::uint32_t>(3 + random.below(4));
     switch (round % 4) {
-      case 0: shape = scene::make_sphere(4 * n), simple = scene::make_sphere(n); break;
-      case 1: shape = scene::make_torus(12 * n, 8 * n), simple = scene::make_torus(3 * n, 2 * n); break;
-      case 2: shape = scene::make_rock(6 * n, 7), simple = scene::make_rock(2 * n, 7); break;
-      default: shape = scene::make_terrain(12 * n, 9 * n, 11), simple = scene::make_terrain(4 * n, 3 * n, 11); break;
+      case 0: shape = lab::make_sphere(4 * n), simple = lab::make_sphere(n); break;
+      case 1: shape = lab::make_torus(12 * n, 8 * n), simple = lab::make_torus(3 * n, 2 * n); break;
+      case 2: shape = lab::make_rock(6 * n, 7), simple = lab::make_rock(2 * n, 7); break;
+      default: shape = lab::make_terrain(12 * n, 9 * n, 11), simple = lab::make_terrain(4 * n, 3 * n, 11); break;
     }
     judge::Surface fine = test::as_surface(shape), coarse = test::as_surface(simple);
     for (Vec3d& p : coarse.positions) {
@@ -354,7 +353,7 @@ TEST(Measured, RandomSimplificationsAreWithinFivePercentOfTheDenseTruth) {
 }
 
 TEST(Measured, SamplesAreThinnedButTheFarthestStay) {
-  const judge::Surface fine = test::as_surface(scene::make_rock(24)), coarse = test::as_surface(scene::make_rock(6));
+  const judge::Surface fine = test::as_surface(lab::make_rock(24)), coarse = test::as_surface(lab::make_rock(6));
   const SourceTree source(fine.positions, fine.triangles);
   const auto samples = initial_samples(source);
   const GroupDeviation result = measure_group(source, test::as_group(coarse), samples, {});
@@ -373,12 +372,12 @@ TEST(Measured, SamplesAreThinnedButTheFarthestStay) {
 
 TEST(Measured, AChainOfLevelsKeepsWhatTheFirstHad) {
   // A thin spike on a fine sphere must still be measured when the third coarser sphere has long lost it.
-  judge::Surface fine = test::as_surface(scene::make_sphere(32));
+  judge::Surface fine = test::as_surface(lab::make_sphere(32));
   fine.positions[1234] *= 1.5;
   const SourceTree source(fine.positions, fine.triangles);
   auto samples = initial_samples(source);
   for (const std::uint32_t n : {16U, 8U, 4U, 2U}) {
-    const judge::Surface coarse = test::as_surface(scene::make_sphere(n));
+    const judge::Surface coarse = test::as_surface(lab::make_sphere(n));
     GroupDeviation result = measure_group(source, test::as_group(coarse), samples, {});
     EXPECT_GE(result.deviation, 0.999 * test::dense_truth(fine, coarse)) << n;
     samples = std::move(result.carried);
@@ -417,10 +416,10 @@ TEST(Measured, TheSourcesOwnBorderBelongsToTheGroup) {
 
 TEST(Measured, SeamsDoNotStopTheSearch) {
   // The same sphere with a vertex of its own for every corner: what is found must not depend on it.
-  scene::Primitive shape = scene::make_sphere(24);
+  scene::Primitive shape = lab::make_sphere(24);
   shape.positions[500] *= 1.25;
-  const judge::Surface coarse = test::as_surface(scene::make_sphere(4));
-  const judge::Surface whole = test::as_surface(shape), split = test::as_surface(scene::with_split_normals(shape));
+  const judge::Surface coarse = test::as_surface(lab::make_sphere(4));
+  const judge::Surface whole = test::as_surface(shape), split = test::as_surface(lab::with_split_normals(shape));
   const GroupDeviation a = test::measure_one_step(whole, coarse), b = test::measure_one_step(split, coarse);
   EXPECT_NEAR(a.deviation, b.deviation, 1e-3 * a.deviation);
   EXPECT_NEAR(a.deviation, 0.25, 0.03);
@@ -444,7 +443,7 @@ TEST(Measured, AHubHidesNoPeakOfItsRim) {
 }
 
 TEST(Measured, TheSameBitsForAnyThreadCount) {
-  const judge::Surface fine = test::as_surface(scene::make_rock(60)), coarse = test::as_surface(scene::make_rock(20));
+  const judge::Surface fine = test::as_surface(lab::make_rock(60)), coarse = test::as_surface(lab::make_rock(20));
   const auto measure = [&](std::size_t threads) {
     const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
     return test::measure_one_step(fine, coarse);

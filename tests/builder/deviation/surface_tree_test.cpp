@@ -127,7 +127,7 @@ TEST(SurfaceTree, EverythingInOnePlaceIsStillASurface) {
 }
 
 TEST(SurfaceTree, AnEarlyStopIsWithinWhatWasAskedFor) {
-  const judge::Surface sphere = test::as_surface(scene::make_sphere(16));
+  const judge::Surface sphere = test::as_surface(lab::make_sphere(16));
   SurfaceTree tree;
   tree.build({sphere.positions, sphere.triangles});
   Random random(3);

@@ -12,7 +12,7 @@
 #include "builder/deviation/deviation.h"
 #include "builder/deviation/point_distance.h"
 #include "judge/metrics/metrics.h"
-#include "scene/samples/samples.h"
+#include "lab/samples/samples.h"
 #include "support/random.h"
 
 namespace meshlode::test {

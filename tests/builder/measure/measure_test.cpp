@@ -11,7 +11,7 @@
 #include "builder/dag/build_dag.h"
 #include "builder/plan/plan.h"
 #include "builder/prepare/prepare.h"
-#include "scene/samples/samples.h"
+#include "lab/samples/samples.h"
 #include "support/sanitized.h"
 
 namespace meshlode::builder {
@@ -26,7 +26,7 @@ struct Built {
 
 /// Not measured yet.
 Built build(const scene::Primitive& shape) {
-  const scene::SourceMesh source = scene::as_mesh(shape);
+  const scene::SourceMesh source = lab::as_mesh(shape);
   const MeshPlan plan = plan_mesh(source, {}, {AttributeChoice::kAll}, "m");
   Built built{*prepare_mesh(source, plan.layout, {}), {}};
   Result<LodDag> dag = build_dag(built.mesh, {});
@@ -42,7 +42,7 @@ LodDag measured(const Built& built, ErrorTier tier) {
 }
 
 TEST(Measure, ChangesErrorsAlone) {
-  const Built built = build(scene::make_rock(12));
+  const Built built = build(lab::make_rock(12));
   for (const ErrorTier tier : {ErrorTier::kQem, ErrorTier::kMeasured, ErrorTier::kCertified}) {
     const LodDag dag = measured(built, tier);
     EXPECT_EQ(dag.vertex_position, built.dag.vertex_position);
@@ -60,7 +60,7 @@ TEST(Measure, ChangesErrorsAlone) {
 }
 
 TEST(Measure, SameForAnyThreadCount) {
-  const Built built = build(scene::make_rock(20));
+  const Built built = build(lab::make_rock(20));
   for (const ErrorTier tier : {ErrorTier::kMeasured, ErrorTier::kCertified}) {
     const LodDag first = measured(built, tier);
     LodDag second;
@@ -78,7 +78,7 @@ TEST(Measure, AnEmptyDagAndAMeshOfOneClusterHaveNothingToMeasure) {
   LodDag empty;
   measure(PreparedMesh(), ErrorTier::kMeasured, empty);
   EXPECT_TRUE(empty.groups.empty());
-  const Built one = build(scene::make_plane(3));
+  const Built one = build(lab::make_plane(3));
   const LodDag dag = measured(one, ErrorTier::kMeasured);
   ASSERT_EQ(dag.groups.size(), 1U);
   EXPECT_TRUE(dag.groups[0].is_terminal);
@@ -91,7 +91,7 @@ TEST(Measure, AnErrorIsTheDeviationWithTheMarginAndTheLargestBelow) {
   for (const ErrorTier tier : {ErrorTier::kMeasured, ErrorTier::kCertified}) {
     const double margin = tier == ErrorTier::kMeasured ? kMeasuredMargin : 1.0;
     for (const scene::Primitive& shape :
-         {scene::make_rock(9), scene::make_loose_pieces(test::kIsSanitized ? 300 : 600)}) {
+         {lab::make_rock(9), lab::make_loose_pieces(test::kIsSanitized ? 300 : 600)}) {
       const Built built = build(shape);
       const LodDag dag = measured(built, tier);
       std::size_t replaced = 0;

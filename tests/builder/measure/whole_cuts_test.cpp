@@ -13,7 +13,7 @@
 #include "builder/measure/measure.h"
 #include "builder/plan/plan.h"
 #include "builder/prepare/prepare.h"
-#include "scene/samples/samples.h"
+#include "lab/samples/samples.h"
 
 namespace meshlode::builder {
 namespace {
@@ -24,7 +24,7 @@ struct Built {
 };
 
 Built build(const scene::Primitive& shape) {
-  const scene::SourceMesh source = scene::as_mesh(shape);
+  const scene::SourceMesh source = lab::as_mesh(shape);
   const MeshPlan plan = plan_mesh(source, {}, {AttributeChoice::kNone}, "m");
   Built built{*prepare_mesh(source, plan.layout, {}), {}};
   Result<LodDag> dag = build_dag(built.mesh, {});
@@ -58,7 +58,7 @@ std::size_t coarsest(const LodDag& dag) {
 
 TEST(WholeCuts, TrueErrorsStayAsTheyAre) {
   for (const scene::Primitive& shape :
-       {scene::make_rock(16), scene::make_terrain(48, 48), scene::make_foliage(600), scene::make_box_soup(150)}) {
+       {lab::make_rock(16), lab::make_terrain(48, 48), lab::make_foliage(600), lab::make_box_soup(150)}) {
     Built built = build(shape);
     const std::vector<double> before = errors_of(built.dag);
     EXPECT_EQ(hold_to_whole_cuts(built.mesh, kMeasuredMargin, built.dag), 0U);
@@ -67,7 +67,7 @@ TEST(WholeCuts, TrueErrorsStayAsTheyAre) {
 }
 
 TEST(WholeCuts, AnErrorThatSaysTooLittleIsRaisedToTheTruth) {
-  for (const scene::Primitive& shape : {scene::make_rock(16), scene::make_foliage(600), scene::make_box_soup(150)}) {
+  for (const scene::Primitive& shape : {lab::make_rock(16), lab::make_foliage(600), lab::make_box_soup(150)}) {
     Built built = build(shape);
     const std::size_t group = coarsest(built.dag);
     ASSERT_LT(group, built.dag.groups.size());
@@ -89,7 +89,7 @@ TEST(WholeCuts, AnErrorThatSaysTooLittleIsRaisedToTheTruth) {
 }
 
 TEST(WholeCuts, WhatIsCoarserIsRaisedToo) {
-  Built built = build(scene::make_rock(24));
+  Built built = build(lab::make_rock(24));
   // Everything says a hundredth: errors still grow along the DAG, and none is true.
   const std::vector<double> truth = errors_of(built.dag);
   for (DagGroup& group : built.dag.groups) {
@@ -102,8 +102,8 @@ TEST(WholeCuts, WhatIsCoarserIsRaisedToo) {
 }
 
 TEST(WholeCuts, AnErrorOfNothingIsRaisedWhereThereIsOneAndStaysOnAPlane) {
-  Built rock = build(scene::make_rock(16));
-  Built plane = build(scene::make_plane(40));
+  Built rock = build(lab::make_rock(16));
+  Built plane = build(lab::make_plane(40));
   const double truth = rock.dag.groups[coarsest(rock.dag)].error;
   for (LodDag* dag : {&rock.dag, &plane.dag}) {
     for (DagGroup& group : dag->groups) {
@@ -118,7 +118,7 @@ TEST(WholeCuts, AnErrorOfNothingIsRaisedWhereThereIsOneAndStaysOnAPlane) {
 }
 
 TEST(WholeCuts, DoesNotDependOnTheNumberOfThreads) {
-  const Built built = build(scene::make_foliage(800));
+  const Built built = build(lab::make_foliage(800));
   std::vector<double> errors[2];
   for (const int threads : {1, 2}) {
     LodDag dag = built.dag;

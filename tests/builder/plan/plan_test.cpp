@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "builder/plan/attributes.h"
-#include "scene/samples/samples.h"
+#include "lab/samples/samples.h"
 
 namespace meshlode::builder {
 namespace {
@@ -16,7 +16,7 @@ std::vector<scene::SceneMaterial> one_material(std::uint32_t uv_sets_used) {
 }
 
 scene::SourceMesh textured_sphere() {
-  scene::SourceMesh mesh = scene::as_mesh(scene::with_smooth_normals(scene::make_sphere(4)));
+  scene::SourceMesh mesh = lab::as_mesh(lab::with_smooth_normals(lab::make_sphere(4)));
   mesh.primitives[0].material = MaterialId(0U);
   mesh.primitives[0].uvs[0].assign(mesh.primitives[0].positions.size(), Vec2f(0.5F));
   mesh.primitives[0].uvs[1].assign(mesh.primitives[0].positions.size(), Vec2f(0.25F));
@@ -66,14 +66,14 @@ TEST(Plan, TangentsAreALossOnlyWhereAMaterialShowsThem) {
 }
 
 TEST(Plan, DerivesNormalsThatAreTheTrianglesOwn) {
-  const scene::SourceMesh facets = scene::as_mesh(scene::with_split_normals(scene::make_sphere(4)));
+  const scene::SourceMesh facets = lab::as_mesh(lab::with_split_normals(lab::make_sphere(4)));
   const MeshPlan plan = plan_mesh(facets, {}, {AttributeChoice::kAuto}, "m");
   EXPECT_TRUE(plan.layout.flat_normal);
   EXPECT_FALSE(plan.layout.has_normal);
 }
 
 TEST(Plan, StoresNormalsIfASingleOneIsNotItsTrianglesOwn) {
-  scene::SourceMesh facets = scene::as_mesh(scene::with_split_normals(scene::make_sphere(4)));
+  scene::SourceMesh facets = lab::as_mesh(lab::with_split_normals(lab::make_sphere(4)));
   Vec3f& normal = facets.primitives[0].normals[7];
   normal = glm::normalize(normal + Vec3f(0.3F, 0.1F, 0.0F));
   EXPECT_TRUE(plan_mesh(facets, {}, {AttributeChoice::kAuto}, "m").layout.has_normal);
@@ -81,7 +81,7 @@ TEST(Plan, StoresNormalsIfASingleOneIsNotItsTrianglesOwn) {
 
 /// A quarter of a degree is not seen, and is more than a promise of normals allows; what floats lose is not.
 TEST(Plan, WherePromisedNormalsAreFlatOnlyAsFarAsFloatsTell) {
-  scene::SourceMesh facets = scene::as_mesh(scene::with_split_normals(scene::make_sphere(4)));
+  scene::SourceMesh facets = lab::as_mesh(lab::with_split_normals(lab::make_sphere(4)));
   AttributeRequest promised;
   promised.promises_normals = true;
   EXPECT_TRUE(plan_mesh(facets, {}, promised, "m").layout.flat_normal);
@@ -97,12 +97,12 @@ TEST(Plan, WherePromisedNormalsAreFlatOnlyAsFarAsFloatsTell) {
 }
 
 TEST(Plan, MissingNormalsAreFlat) {
-  const MeshPlan plan = plan_mesh(scene::as_mesh(scene::make_sphere(2)), {}, {AttributeChoice::kAuto}, "m");
+  const MeshPlan plan = plan_mesh(lab::as_mesh(lab::make_sphere(2)), {}, {AttributeChoice::kAuto}, "m");
   EXPECT_TRUE(plan.layout.flat_normal);
 }
 
 TEST(Plan, LeavesOutWhiteColorsAndKeepsOthers) {
-  scene::SourceMesh mesh = scene::as_mesh(scene::make_sphere(2));
+  scene::SourceMesh mesh = lab::as_mesh(lab::make_sphere(2));
   mesh.primitives[0].colors.assign(mesh.primitives[0].positions.size(), Vec4f(1.0F));
   EXPECT_FALSE(plan_mesh(mesh, {}, {AttributeChoice::kAuto}, "m").layout.has_color);
   mesh.primitives[0].colors[3].y = 0.5F;
@@ -138,7 +138,7 @@ TEST(Plan, ANameThatChangesNothingForcesNothing) {
 }
 
 TEST(Plan, FlatNormalsAreStoredOnlyByName) {
-  const scene::SourceMesh facets = scene::as_mesh(scene::with_split_normals(scene::make_sphere(4)));
+  const scene::SourceMesh facets = lab::as_mesh(lab::with_split_normals(lab::make_sphere(4)));
   EXPECT_TRUE(plan_mesh(facets, {}, {AttributeChoice::kAll}, "m").layout.flat_normal);
   const MeshPlan stored = plan_mesh(facets, {}, {AttributeChoice::kAuto, kAttributeNormal, 0}, "m");
   EXPECT_TRUE(stored.layout.has_normal);

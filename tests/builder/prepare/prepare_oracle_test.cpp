@@ -21,7 +21,7 @@
 #include "builder/prepare/prepare.h"
 #include "builder/prepare/separate_needles.h"
 #include "builder/prepare/zero_area.h"
-#include "scene/samples/samples.h"
+#include "lab/samples/samples.h"
 #include "support/random.h"
 
 namespace meshlode::builder {
@@ -208,7 +208,7 @@ TEST(PrepareOracle, TheOriginIsTheGridPointNearestToTheMiddle) {
     scene::Primitive shape;
     for (int k = 0; k < 4; ++k) shape.positions.push_back(at + size * Vec3d(k & 1, (k >> 1) & 1, k == 3 ? 1 : 0));
     shape.indices = {0, 1, 2, 1, 3, 2};
-    const auto mesh = prepare_mesh(scene::as_mesh(shape), {}, {});
+    const auto mesh = prepare_mesh(lab::as_mesh(shape), {}, {});
     ASSERT_TRUE(mesh.ok());
     const double step = mesh->grid.step();
     for (int axis = 0; axis < 3; ++axis) {
@@ -216,7 +216,7 @@ TEST(PrepareOracle, TheOriginIsTheGridPointNearestToTheMiddle) {
       const double middle = at[axis] + 0.5 * size[axis];
       EXPECT_LE(std::fabs(mesh->origin[axis] - middle), 0.5 * step * (1.0 + 1e-9) + 1e-12);
     }
-    const auto plan = plan_grid(scene::as_mesh(shape), {});
+    const auto plan = plan_grid(lab::as_mesh(shape), {});
     ASSERT_TRUE(plan.ok());
     EXPECT_NEAR(plan->largest_side, std::max({size.x, size.y, size.z}), 1e-12);
     EXPECT_EQ(plan->grid.step(), step);
@@ -424,7 +424,7 @@ TEST(GridLimits, OfTheFormatAndOfSquaresAreTheLastThatFit) {
     PrepareOptions options;
     options.grid_step = step;
     const auto mesh =
-        prepare_mesh(scene::as_mesh(one_triangle({0, 0, 0}, {size, 0, 0}, {0, size * 0x1p-20, 0})), {}, options);
+        prepare_mesh(lab::as_mesh(one_triangle({0, 0, 0}, {size, 0, 0}, {0, size * 0x1p-20, 0})), {}, options);
     return mesh.ok() ? std::string() : mesh.error().detail;
   };
   EXPECT_EQ(refusal(0x1p-110, 0x1p-126), "");
@@ -434,7 +434,7 @@ TEST(GridLimits, OfTheFormatAndOfSquaresAreTheLastThatFit) {
   // So flat that the diagonal is the longest side to the last bit: at 2^-500 its square is whole, and the grid is what
   // has no such step.
   const auto detail = [](double size) {
-    return prepare_mesh(scene::as_mesh(one_triangle({0, 0, 0}, {size, 0, 0}, {0, size * 0x1p-40, 0})), {}, {})
+    return prepare_mesh(lab::as_mesh(one_triangle({0, 0, 0}, {size, 0, 0}, {0, size * 0x1p-40, 0})), {}, {})
         .error()
         .detail;
   };
@@ -463,8 +463,8 @@ TEST(PrepareOracle, OnAGivenStepNoNeedleMoves) {
     PrepareOptions options;
     options.grid_step = unit * 0x1p-4;
     const auto mesh =
-        prepare_mesh(scene::as_mesh(one_triangle(Vec3d(0.01, 0.01, 0.0) * unit, Vec3d(0.02, 0.015, 0.0) * unit,
-                                                 Vec3d(0.0, 0.0, 9.0) * unit)),
+        prepare_mesh(lab::as_mesh(one_triangle(Vec3d(0.01, 0.01, 0.0) * unit, Vec3d(0.02, 0.015, 0.0) * unit,
+                                               Vec3d(0.0, 0.0, 9.0) * unit)),
                      {}, options);
     ASSERT_TRUE(mesh.ok());
     EXPECT_EQ(mesh->grid_collapsed, 1U) << unit;
@@ -503,9 +503,9 @@ TEST(MedianEdgeScale, IsExactUnderPowersOfTwo) {
         shape.indices.push_back(3 * t + k);
       }
     }
-    const double median = median_edge_length(gather_corners(scene::as_mesh(shape), {}));
+    const double median = median_edge_length(gather_corners(lab::as_mesh(shape), {}));
     for (const double scale : {0x1p-100, 0x1p-30, 0x1p20}) {
-      EXPECT_EQ(median_edge_length(gather_corners(scene::as_mesh(scene::scaled(shape, scale)), {})), median * scale);
+      EXPECT_EQ(median_edge_length(gather_corners(lab::as_mesh(lab::scaled(shape, scale)), {})), median * scale);
     }
   }
 }
@@ -516,7 +516,7 @@ TEST(CornersOfAnyTriangle, HaveANormalOfLengthOneAndNoNegativeZero) {
   layout.has_normal = true;
   for (const double size : {0.0, 1e-300, 1.0, 1e150, 1e300}) {
     const Corners corners =
-        gather_corners(scene::as_mesh(one_triangle({-0.0, -0.0, -0.0}, {size, -0.0, 0.0}, {-0.0, size, size})), layout);
+        gather_corners(lab::as_mesh(one_triangle({-0.0, -0.0, -0.0}, {size, -0.0, 0.0}, {-0.0, size, size})), layout);
     for (std::uint32_t v = 0; v < 3; ++v) {
       const float* n = corners.attributes_of(v, 3);
       EXPECT_NEAR(n[0] * n[0] + n[1] * n[1] + n[2] * n[2], 1.0F, 1e-6F) << size;

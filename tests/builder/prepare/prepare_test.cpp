@@ -12,14 +12,14 @@
 
 #include "builder/prepare/corners.h"
 #include "builder/prepare/median_edge.h"
-#include "scene/samples/samples.h"
+#include "lab/samples/samples.h"
 
 namespace meshlode::builder {
 namespace {
 
 PreparedMesh prepare(const scene::Primitive& shape, const PrepareOptions& options = {},
                      const AttributeLayout& layout = {}) {
-  Result<PreparedMesh> mesh = prepare_mesh(scene::as_mesh(shape), layout, options);
+  Result<PreparedMesh> mesh = prepare_mesh(lab::as_mesh(shape), layout, options);
   EXPECT_TRUE(mesh.ok()) << (mesh.ok() ? "" : mesh.error().message());
   return mesh.ok() ? std::move(*mesh) : PreparedMesh{};
 }
@@ -41,7 +41,7 @@ scene::Primitive shuffled(const scene::Primitive& shape) {
 }
 
 TEST(Prepare, RenumberingTheInputChangesNothing) {
-  const scene::Primitive shape = scene::make_torus(40, 20);
+  const scene::Primitive shape = lab::make_torus(40, 20);
   const PreparedMesh a = prepare(shape);
   const PreparedMesh b = prepare(shuffled(shape));
   EXPECT_EQ(a.positions, b.positions);
@@ -64,7 +64,7 @@ scene::Primitive two_sizes(std::uint32_t pairs) {
 
 TEST(Prepare, RenumberingALargeInputDoesNotChangeTheGridEither) {
   const scene::Primitive shape = two_sizes(22500);
-  const auto grid = plan_grid(scene::as_mesh(shape), {}), of_shuffled = plan_grid(scene::as_mesh(shuffled(shape)), {});
+  const auto grid = plan_grid(lab::as_mesh(shape), {}), of_shuffled = plan_grid(lab::as_mesh(shuffled(shape)), {});
   ASSERT_TRUE(grid.ok() && of_shuffled.ok());
   EXPECT_EQ(grid->median_edge, of_shuffled->median_edge);
   EXPECT_EQ(grid->grid.step(), of_shuffled->grid.step());
@@ -82,7 +82,7 @@ TEST(MedianEdge, IsThatOfAllEdgesThatHaveALength) {
     }
     std::sort(lengths.begin(), lengths.end());
     const double expected = lengths.empty() ? 0.0 : lengths[lengths.size() / 2];
-    const double median = median_edge_length(gather_corners(scene::as_mesh(shape), {}));
+    const double median = median_edge_length(gather_corners(lab::as_mesh(shape), {}));
     EXPECT_LE(median, expected * (1.0 + 1e-15)) << pairs;
     EXPECT_GE(median, expected * (1.0 - 0x1p-21)) << pairs;
     EXPECT_EQ(std::ilogb(median), std::ilogb(expected)) << pairs;
@@ -100,8 +100,8 @@ AttributeLayout with_normals() {
 
 TEST(Corners, WhereNormalsAreMissingEachTriangleGetsItsOwnOfLengthOne) {
   for (const double scale : {1e-9, 1.0, 1e9}) {
-    const scene::Primitive shape = scene::scaled(scene::make_torus(12, 8), scale);
-    const Corners corners = gather_corners(scene::as_mesh(shape), with_normals());
+    const scene::Primitive shape = lab::scaled(lab::make_torus(12, 8), scale);
+    const Corners corners = gather_corners(lab::as_mesh(shape), with_normals());
     ASSERT_EQ(corners.positions.size(), shape.indices.size()) << "each corner is a vertex of its own";
     for (std::size_t i = 0; i < shape.indices.size(); ++i) {
       ASSERT_EQ(corners.triangles[i], i);
@@ -134,7 +134,7 @@ bool is_before_on_z_curve(const Vec3i& a, const Vec3i& b) {
 }
 
 TEST(Prepare, PositionsStandInZOrder) {
-  for (const scene::Primitive& shape : {scene::make_torus(40, 20), scene::make_far_plane(32)}) {
+  for (const scene::Primitive& shape : {lab::make_torus(40, 20), lab::make_far_plane(32)}) {
     const PreparedMesh mesh = prepare(shape);
     for (std::size_t i = 1; i < mesh.positions.size(); ++i) {
       ASSERT_TRUE(is_before_on_z_curve(mesh.positions[i - 1], mesh.positions[i])) << i;
@@ -143,16 +143,16 @@ TEST(Prepare, PositionsStandInZOrder) {
 }
 
 TEST(Prepare, WeldsVerticesThatAreOneInSpace) {
-  const scene::Primitive shared = scene::make_sphere(6);
-  const PreparedMesh mesh = prepare(scene::with_split_normals(shared));
+  const scene::Primitive shared = lab::make_sphere(6);
+  const PreparedMesh mesh = prepare(lab::with_split_normals(shared));
   EXPECT_EQ(mesh.positions.size(), shared.positions.size());
 }
 
 TEST(Prepare, KeepsWedgesApartWhereAttributesDiffer) {
   AttributeLayout layout;
   layout.has_normal = true;
-  const scene::Primitive shared = scene::make_sphere(6);
-  const PreparedMesh mesh = prepare(scene::with_split_normals(shared), {}, layout);
+  const scene::Primitive shared = lab::make_sphere(6);
+  const PreparedMesh mesh = prepare(lab::with_split_normals(shared), {}, layout);
   EXPECT_EQ(mesh.positions.size(), shared.positions.size());
   EXPECT_GT(mesh.wedge_position.size(), 2 * mesh.positions.size());
 }
@@ -179,7 +179,7 @@ TEST(Prepare, CountsTrianglesWithoutAreaAndKeepsThoseAlongAnEdge) {
 }
 
 TEST(Prepare, ATriangleWithoutAreaFarAwayDoesNotCoarsenTheGrid) {
-  scene::Primitive shape = scene::make_sphere(5);
+  scene::Primitive shape = lab::make_sphere(5);
   const PreparedMesh before = prepare(shape);
   shape.positions.push_back({1e300, 1e300, 0});
   shape.positions.push_back({1e300, 1e300, 0});
@@ -194,7 +194,7 @@ TEST(Prepare, ATriangleWithoutAreaFarAwayDoesNotCoarsenTheGrid) {
 
 /// A sheet from which a needle stands out: 1 long, and narrower than a cell of the grid, beside other needles' corners.
 scene::Primitive sheet_with_needles(int count) {
-  scene::Primitive shape = scene::make_plane(8);
+  scene::Primitive shape = lab::make_plane(8);
   const auto at = [&](double x, double y, double z) {
     shape.positions.emplace_back(x, y, z);
     return static_cast<std::uint32_t>(shape.positions.size() - 1);
@@ -236,7 +236,7 @@ TEST(Prepare, NegativeZeroIsZero) {
 
 TEST(Prepare, MovesNoVertexFartherThanItSays) {
   for (const double scale : {1e-6, 1.0, 1e9}) {
-    const scene::Primitive shape = scene::scaled(scene::make_sphere(9), scale);
+    const scene::Primitive shape = lab::scaled(lab::make_sphere(9), scale);
     const PreparedMesh mesh = prepare(shape);
     EXPECT_LE(mesh.level0_deviation, 2.5e-5 * mesh.diagonal * (1 + 1e-12));
     EXPECT_GT(mesh.level0_deviation, 0.0);
@@ -251,7 +251,7 @@ TEST(Prepare, MovesNoVertexFartherThanItSays) {
 }
 
 TEST(Prepare, KeepsTheFeaturesOfAMeshFarAway) {
-  const scene::Primitive shape = scene::make_far_plane(32);  // bumps of 1e-3, a million units out
+  const scene::Primitive shape = lab::make_far_plane(32);  // bumps of 1e-3, a million units out
   const PreparedMesh mesh = prepare(shape);
   EXPECT_EQ(mesh.positions.size(), 33U * 33U);
   EXPECT_LT(mesh.level0_deviation, 1e-4);
@@ -262,7 +262,7 @@ TEST(Prepare, MeshesOfOneStepAbut) {
   // Two boxes of a kit that share a face at x = 1: its vertices have the same places in object space, to the bit.
   PrepareOptions options;
   options.grid_step = 0.01;
-  const scene::Primitive left = scene::make_cube(4, 1.0);
+  const scene::Primitive left = lab::make_cube(4, 1.0);
   scene::Primitive right = left;
   for (Vec3d& p : right.positions) p.x += 2.0;
   const auto face = [](const PreparedMesh& mesh) {
@@ -282,7 +282,7 @@ TEST(Prepare, MeshesOfOneStepAbut) {
 TEST(Prepare, RefusesAGridThatNeedsMoreThan24Bits) {
   PrepareOptions options;
   options.grid_step = 1e-9;
-  const auto mesh = prepare_mesh(scene::as_mesh(scene::make_cube(2)), {}, options);
+  const auto mesh = prepare_mesh(lab::as_mesh(lab::make_cube(2)), {}, options);
   ASSERT_FALSE(mesh.ok());
   EXPECT_EQ(mesh.error().code, ErrorCode::kUnsupported);
 }
@@ -290,13 +290,13 @@ TEST(Prepare, RefusesAGridThatNeedsMoreThan24Bits) {
 TEST(Prepare, RefusesExtentsWhoseSquareADoubleCannotHold) {
   // 1e-163 squared is no longer a normal double, 1e-200 squared is zero: neither may become a mesh of one point.
   for (const double scale : {1e-300, 1e-200, 1e-163, 1e-155, 1e160, 1e200}) {
-    const auto mesh = prepare_mesh(scene::as_mesh(scene::scaled(scene::make_cube(2), scale)), {}, {});
+    const auto mesh = prepare_mesh(lab::as_mesh(lab::scaled(lab::make_cube(2), scale)), {}, {});
     ASSERT_FALSE(mesh.ok()) << scale;
     EXPECT_EQ(mesh.error().code, ErrorCode::kUnsupported) << scale;
-    EXPECT_FALSE(plan_grid(scene::as_mesh(scene::scaled(scene::make_cube(2), scale)), {}).ok()) << scale;
+    EXPECT_FALSE(plan_grid(lab::as_mesh(lab::scaled(lab::make_cube(2), scale)), {}).ok()) << scale;
   }
   for (const double scale : {1e-30, 1e30}) {
-    const auto mesh = prepare_mesh(scene::as_mesh(scene::scaled(scene::make_cube(2), scale)), {}, {});
+    const auto mesh = prepare_mesh(lab::as_mesh(lab::scaled(lab::make_cube(2), scale)), {}, {});
     ASSERT_TRUE(mesh.ok()) << scale;
     EXPECT_EQ(mesh->triangles.size(), std::size_t{6 * 2 * 2 * 2}) << scale;
   }
@@ -304,8 +304,8 @@ TEST(Prepare, RefusesExtentsWhoseSquareADoubleCannotHold) {
 
 TEST(Prepare, RefusesWhatTheFormatCannotHoldBeforeAnythingIsBuilt) {
   const auto refusal = [](const scene::Primitive& shape) {
-    const auto mesh = prepare_mesh(scene::as_mesh(shape), {}, {});
-    const auto plan = plan_grid(scene::as_mesh(shape), {});
+    const auto mesh = prepare_mesh(lab::as_mesh(shape), {}, {});
+    const auto plan = plan_grid(lab::as_mesh(shape), {});
     EXPECT_EQ(mesh.ok(), plan.ok());
     if (mesh.ok()) return std::string();
     EXPECT_EQ(mesh.error().code, ErrorCode::kUnsupported);
@@ -313,10 +313,10 @@ TEST(Prepare, RefusesWhatTheFormatCannotHoldBeforeAnythingIsBuilt) {
     return mesh.error().detail;
   };
   for (const double scale : {1e-37, 1e37}) {
-    EXPECT_EQ(refusal(scene::scaled(scene::make_cube(2), scale)), "the grid's step leaves the range of floats");
+    EXPECT_EQ(refusal(lab::scaled(lab::make_cube(2), scale)), "the grid's step leaves the range of floats");
   }
   // Short edges ask for a step that would do; it is the extent that is too large.
-  scene::Primitive outlier = scene::make_cube(2);
+  scene::Primitive outlier = lab::make_cube(2);
   outlier.positions[0] = {1e36, 0.0, 0.0};
   EXPECT_EQ(refusal(outlier), "");
   for (const double far : {1.4e36, 1e37, 1e38}) {
@@ -328,15 +328,15 @@ TEST(Prepare, RefusesWhatTheFormatCannotHoldBeforeAnythingIsBuilt) {
 }
 
 TEST(Prepare, RefusesPositionsThatAreNotFinite) {
-  scene::Primitive shape = scene::make_cube(2);
+  scene::Primitive shape = lab::make_cube(2);
   shape.positions[3].y = std::numeric_limits<double>::quiet_NaN();
-  const auto mesh = prepare_mesh(scene::as_mesh(shape), {}, {});
+  const auto mesh = prepare_mesh(lab::as_mesh(shape), {}, {});
   ASSERT_FALSE(mesh.ok());
   EXPECT_EQ(mesh.error().code, ErrorCode::kInvalid);
 }
 
 TEST(Prepare, StrayVerticesDoNotCoarsenTheGrid) {
-  scene::Primitive shape = scene::make_sphere(5);
+  scene::Primitive shape = lab::make_sphere(5);
   const PreparedMesh before = prepare(shape);
   shape.positions.push_back({1e12, 0, 0});
   const PreparedMesh after = prepare(shape);
@@ -355,9 +355,9 @@ TEST(Prepare, AnEmptyMeshAndASinglePointAreFine) {
 }
 
 TEST(Prepare, CountsPiecesByWhatTouches) {
-  EXPECT_EQ(prepare(scene::make_sphere(4)).piece_count, 1U);
-  EXPECT_EQ(prepare(scene::make_box_soup(37)).piece_count, 37U);
-  EXPECT_EQ(prepare(scene::make_double_cone(12)).piece_count, 1U) << "two cones that share their tip";
+  EXPECT_EQ(prepare(lab::make_sphere(4)).piece_count, 1U);
+  EXPECT_EQ(prepare(lab::make_box_soup(37)).piece_count, 37U);
+  EXPECT_EQ(prepare(lab::make_double_cone(12)).piece_count, 1U) << "two cones that share their tip";
 }
 
 TEST(ChooseGrid, AGivenStepIsASmallOddMantissa) {
@@ -446,7 +446,7 @@ TEST(Prepare, NoVertexMovesFartherThanThePositionError) {
   for (const double error : {0.05, 0.001}) {
     PrepareOptions options;
     options.position_error = error;
-    const PreparedMesh mesh = prepare(scene::make_sphere(16), options);
+    const PreparedMesh mesh = prepare(lab::make_sphere(16), options);
     EXPECT_LE(mesh.level0_deviation, error);
     EXPECT_GT(mesh.level0_deviation, 0.2 * error) << "the budget is used";
   }

@@ -16,17 +16,17 @@
 #include "builder/promise/painted_source.h"
 #include "judge/validate/validate.h"
 #include "judge/verify/verify.h"
+#include "lab/samples/samples.h"
 #include "run/decode/decode.h"
 #include "run/read/asset.h"
 #include "run/select/select.h"
-#include "scene/samples/samples.h"
 
 namespace meshlode::builder {
 namespace {
 
 /// A wavy sheet over [-1, 1]² with UVs by a function of (x, y) in [0, 1].
 scene::Primitive painted_sheet(std::uint32_t n, double bumps, const std::function<Vec2d(double, double)>& uv) {
-  scene::Primitive sheet = scene::make_plane(n);
+  scene::Primitive sheet = lab::make_plane(n);
   for (Vec3d& p : sheet.positions) {
     const Vec2d q = uv(0.5 + 0.5 * p.x, 0.5 + 0.5 * p.z);
     sheet.uvs[0].emplace_back(static_cast<float>(q.x), static_cast<float>(q.y));
@@ -37,7 +37,7 @@ scene::Primitive painted_sheet(std::uint32_t n, double bumps, const std::functio
 
 /// The scene of one mesh whose material samples its UVs by a texture of unknown size.
 scene::Scene textured(scene::Primitive shape) {
-  scene::Scene scene = scene::as_scene(scene::as_mesh(std::move(shape)));
+  scene::Scene scene = lab::as_scene(lab::as_mesh(std::move(shape)));
   for (scene::SceneMaterial& material : scene.materials) {
     material.uv_sets_used = 1;
     material.textures.push_back({});
@@ -207,7 +207,7 @@ TEST(Promise, AnyAreaAtAllCounts) {
     for (std::uint32_t k = 0; k < 3; ++k) sheet.indices.push_back(base + k);
   };
   const auto unit = [&] {
-    const scene::SourceMesh mesh = scene::as_mesh(sheet);
+    const scene::SourceMesh mesh = lab::as_mesh(sheet);
     AttributeLayout layout;
     layout.uv_set_count = 1;
     const std::vector<TexelExtents> extents(1, {{{1024.0, 1024.0}}});
@@ -280,7 +280,7 @@ TEST(Promise, HardTexturesKeepWhatIsProven) {
 /// Flat, and thinner than what doubles hold about the mesh's origin: its normal is its own all the same, and what cuts
 /// make of it is promised (V209).
 TEST(Promise, ANeedleKeepsItsNormalAboutAnyOrigin) {
-  scene::Primitive plate = scene::make_plane(12);
+  scene::Primitive plate = lab::make_plane(12);
   plate.normals.clear();
   for (Vec3d& p : plate.positions) p = 4.0 * (p + Vec3d(1.0, 0.0, 1.0));
   scene::Primitive above = plate;  // so that the origin lies between them, far from both
@@ -295,7 +295,7 @@ TEST(Promise, ANeedleKeepsItsNormalAboutAnyOrigin) {
       plate.positions.push_back(p);
     for (std::uint32_t k = 0; k < 3; ++k) plate.indices.push_back(base + k);
   }
-  const scene::Scene scene = scene::as_scene(scene::as_mesh(std::move(plate)));
+  const scene::Scene scene = lab::as_scene(lab::as_mesh(std::move(plate)));
   for (const format::ErrorTier tier : {format::ErrorTier::kMeasured, format::ErrorTier::kCertified}) {
     const run::Asset asset = opened(built(scene, format::Promise::kAppearance, tier));
     const judge::VerifyReport report = judge::verify_asset(asset, scene, {.uniform_cuts = 4, .cameras = 2});
@@ -326,7 +326,7 @@ TEST(Promise, WhatIsProvenIsNotFarFromWhatIsMeasured) {
   const auto wavy = [](double x, double y) { return Vec2d(x + 0.05 * std::sin(9.0 * x) * std::sin(7.0 * y), y); };
   for (const bool is_flat : {false, true}) {
     scene::Primitive sheet = painted_sheet(32, 0.1, wavy);
-    if (!is_flat) sheet = scene::with_smooth_normals(std::move(sheet));
+    if (!is_flat) sheet = lab::with_smooth_normals(std::move(sheet));
     const auto median = [&](format::ErrorTier tier) {
       const run::Asset asset = opened(built(textured(sheet), format::Promise::kAppearance, tier));
       EXPECT_GE(asset.promises()[0].level0_appearance, asset.promises()[0].level0_texels);
@@ -354,7 +354,7 @@ TEST(Promise, WithoutTexturesTexelsArePositions) {
       EXPECT_EQ(asset.promise_errors()[g].appearance_error, 0.0F);
     }
   };
-  same(scene::as_scene(scene::as_mesh(scene::make_sphere(20))));
+  same(lab::as_scene(lab::as_mesh(lab::make_sphere(20))));
   // All of the texture is one point, and so no texel.
   same(textured(painted_sheet(24, 0.1, [](double, double) { return Vec2d(0.5, 0.5); })));
   const double nan = std::numeric_limits<double>::quiet_NaN();
@@ -363,11 +363,10 @@ TEST(Promise, WithoutTexturesTexelsArePositions) {
 
 TEST(Promise, NormalsThatTurnAreMoreThanPositions) {
   for (const bool is_flat : {false, true}) {
-    scene::Primitive ball = scene::make_sphere(32);
+    scene::Primitive ball = lab::make_sphere(32);
     ball.normals.clear();
-    if (!is_flat) ball = scene::with_smooth_normals(std::move(ball));
-    const run::Asset asset =
-        opened(built(scene::as_scene(scene::as_mesh(std::move(ball))), format::Promise::kAppearance));
+    if (!is_flat) ball = lab::with_smooth_normals(std::move(ball));
+    const run::Asset asset = opened(built(lab::as_scene(lab::as_mesh(std::move(ball))), format::Promise::kAppearance));
     bool is_any_above = false;
     for (std::size_t g = 0; g < asset.groups().size(); ++g) {
       const float position = asset.groups()[g].error, appearance = asset.promise_errors()[g].appearance_error;
@@ -434,7 +433,7 @@ TEST(Promise, IsMeasuredInTheTierQemToo) {
   expect_texels_kept(painted_sheet(32, 0.1, wavy), format::ErrorTier::kQem);
   scene::Primitive bare = painted_sheet(32, 0.1, wavy);
   bare.uvs[0].clear();
-  const scene::Scene scene = scene::as_scene(scene::as_mesh(std::move(bare)));
+  const scene::Scene scene = lab::as_scene(lab::as_mesh(std::move(bare)));
   const run::Asset asset = opened(built(scene, format::Promise::kTexels, format::ErrorTier::kQem));
   bool is_any_above = false;
   for (std::size_t g = 0; g < asset.groups().size(); ++g) {

@@ -13,7 +13,7 @@
 #include "builder/simplify/border_rule.h"
 #include "builder/simplify/quadric.h"
 #include "builder/simplify/two_charts.h"
-#include "scene/samples/samples.h"
+#include "lab/samples/samples.h"
 #include "support/border_chain.h"
 #include "support/sanitized.h"
 
@@ -40,7 +40,7 @@ SimplifyInput as_input(const PreparedMesh& mesh) {
 }
 
 PreparedMesh prepare(const scene::Primitive& shape, const AttributeLayout& layout = {}) {
-  return *prepare_mesh(scene::as_mesh(shape), layout, {});
+  return *prepare_mesh(lab::as_mesh(shape), layout, {});
 }
 
 template <class Surface>
@@ -96,7 +96,7 @@ TEST(WedgeQuadric, ALinearAttributeIsReproducedWithoutError) {
 }
 
 TEST(Simplify, AFlatPatchGoesDownToTwoTrianglesWithoutError) {
-  SimplifyInput input = as_input(prepare(scene::make_plane(16)));
+  SimplifyInput input = as_input(prepare(lab::make_plane(16)));
   SimplifyOptions options;
   options.target_triangles = 2;
   const SimplifyResult result = simplify_group(input, options);
@@ -113,7 +113,7 @@ TEST(Simplify, AFlatPatchGoesDownToTwoTrianglesWithoutError) {
 }
 
 TEST(Simplify, ASphereStaysNearTheSphere) {
-  SimplifyInput input = as_input(prepare(scene::make_sphere(20)));  // 4,800 triangles
+  SimplifyInput input = as_input(prepare(lab::make_sphere(20)));  // 4,800 triangles
   SimplifyOptions options;
   options.target_triangles = 300;
   const SimplifyResult result = simplify_group(input, options);
@@ -129,10 +129,10 @@ TEST(Simplify, ASphereStaysNearTheSphere) {
 /// I6 by construction: whatever is locked, however hard the shape, the border between locked vertices is kept exactly
 /// and a closed surface stays closed.
 TEST(Simplify, TheBorderOfALockedPatchIsKeptExactly) {
-  const scene::Primitive shapes[] = {
-      scene::make_sphere(12),     scene::make_plane(20),      scene::make_three_sheets(12), scene::make_double_cone(80),
-      scene::make_slivers(300),   scene::make_moebius(60, 6), scene::make_box_soup(40),     scene::make_duplicates(10),
-      scene::make_zero_areas(10), scene::make_blade(16),      scene::make_loose_pieces(90), scene::make_torus(24, 12)};
+  const scene::Primitive shapes[] = {lab::make_sphere(12),      lab::make_plane(20),        lab::make_three_sheets(12),
+                                     lab::make_double_cone(80), lab::make_slivers(300),     lab::make_moebius(60, 6),
+                                     lab::make_box_soup(40),    lab::make_duplicates(10),   lab::make_zero_areas(10),
+                                     lab::make_blade(16),       lab::make_loose_pieces(90), lab::make_torus(24, 12)};
   SplitMix64 random(42);
   for (const scene::Primitive& shape : shapes) {
     for (int trial = 0; trial < 4; ++trial) {
@@ -178,7 +178,7 @@ TEST(Simplify, TheBorderOfALockedPatchIsKeptExactly) {
 TEST(Simplify, LockedVerticesKeepTheirAttributesBitForBit) {
   AttributeLayout layout;
   layout.has_normal = true;
-  SimplifyInput input = as_input(prepare(scene::with_smooth_normals(scene::make_plane(12)), layout));
+  SimplifyInput input = as_input(prepare(lab::with_smooth_normals(lab::make_plane(12)), layout));
   std::set<std::array<float, 6>> locked;
   for (std::size_t p = 0; p < input.positions.size(); ++p) input.is_locked[p] = p % 5 == 0 ? 1 : 0;
   // Give each wedge a normal of its own so that a mix-up would show.
@@ -201,7 +201,7 @@ TEST(Simplify, LockedVerticesKeepTheirAttributesBitForBit) {
 }
 
 TEST(Simplify, LinearTextureCoordinatesStayExact) {
-  scene::Primitive plane = scene::make_plane(16);
+  scene::Primitive plane = lab::make_plane(16);
   for (const Vec3d& p : plane.positions) plane.uvs[0].emplace_back(float(0.5 + 0.25 * p.x), float(0.5 - 0.4 * p.z));
   AttributeLayout layout;
   layout.uv_set_count = 1;
@@ -250,7 +250,7 @@ TEST(Simplify, AHubOfManyWedgesIsNoTrap) {
     wheel.positions.emplace_back(std::cos(angle), 0.0, std::sin(angle));
     for (const std::uint32_t v : {0U, 1 + (i + 1) % n, 1 + i}) wheel.indices.push_back(v);
   }
-  const double plane = seconds_to_halve(scene::make_plane(kSide));  // as many triangles
+  const double plane = seconds_to_halve(lab::make_plane(kSide));  // as many triangles
   EXPECT_LT(seconds_to_halve(wheel), 300.0 * std::max(plane, 0.01));
 }
 
@@ -280,14 +280,14 @@ TEST(Simplify, SeamsStayWhereTheyAre) {
 TEST(Simplify, CreasesOfSplitNormalsDoNotStopIt) {
   AttributeLayout layout;
   layout.has_normal = true;
-  SimplifyInput input = as_input(prepare(scene::with_split_normals(scene::make_sphere(16)), layout));
+  SimplifyInput input = as_input(prepare(lab::with_split_normals(lab::make_sphere(16)), layout));
   const SimplifyResult result = simplify_group(input, half_of(input));
   EXPECT_LE(result.triangles.size(), input.triangles.size() / 2);
   EXPECT_TRUE(border_of(result).empty());
 }
 
 TEST(Simplify, EverythingLockedIsLeftAloneAndSaysSo) {
-  SimplifyInput input = as_input(prepare(scene::make_sphere(6)));
+  SimplifyInput input = as_input(prepare(lab::make_sphere(6)));
   input.is_locked.assign(input.is_locked.size(), 1);
   const SimplifyResult result = simplify_group(input, half_of(input));
   EXPECT_EQ(result.triangles.size(), input.triangles.size());
@@ -372,7 +372,7 @@ TEST(Simplify, VerticesOfALockedBorderStayAndAreThere) {
   const SimplifyResult free = simplify_group(input, options);
   EXPECT_FALSE(is_there(free, input.positions[0]) && is_there(free, input.positions[4])) << "or it says nothing";
 
-  SimplifyInput plane = as_input(prepare(scene::make_plane(16)));
+  SimplifyInput plane = as_input(prepare(lab::make_plane(16)));
   plane.is_border_locked = with_locked_border(plane).is_locked;
   SimplifyOptions to_the_border;
   to_the_border.target_triangles = 2;
@@ -382,11 +382,11 @@ TEST(Simplify, VerticesOfALockedBorderStayAndAreThere) {
 }
 
 TEST(Simplify, ScaleChangesNothing) {
-  const scene::Primitive shape = scene::make_torus(24, 12);
+  const scene::Primitive shape = lab::make_torus(24, 12);
   SimplifyInput reference = as_input(prepare(shape));
   const SimplifyResult expected = simplify_group(reference, half_of(reference));
   for (const int exponent : {-40, 30}) {
-    SimplifyInput input = as_input(prepare(scene::scaled(shape, std::ldexp(1.0, exponent))));
+    SimplifyInput input = as_input(prepare(lab::scaled(shape, std::ldexp(1.0, exponent))));
     const SimplifyResult result = simplify_group(input, half_of(input));
     EXPECT_EQ(result.positions, expected.positions);
     EXPECT_DOUBLE_EQ(result.quadric_error, std::ldexp(expected.quadric_error, exponent));

@@ -5,12 +5,12 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "scene/samples/samples.h"
+#include "lab/samples/samples.h"
 
 namespace meshlode::builder {
 
 [[nodiscard]] inline scene::Primitive make_two_charts(std::uint32_t cells) {
-  const scene::Primitive plane = scene::make_plane(cells);
+  const scene::Primitive plane = lab::make_plane(cells);
   scene::Primitive cut;
   for (std::size_t i = 0; i < plane.indices.size(); i += 3) {
     double x = 0.0;

@@ -15,7 +15,7 @@
 #include "builder/store/mesh_store.h"
 #include "builder/store/stored_mesh.h"
 #include "format/names.h"
-#include "scene/samples/samples.h"
+#include "lab/samples/samples.h"
 #include "support/random.h"
 #include "support/sanitized.h"
 
@@ -43,11 +43,11 @@ class MemoryStore : public MeshStore {
 
 scene::Primitive random_shape(test::Random& random) {
   switch (random.below(5)) {
-    case 0: return scene::make_sphere(8);
-    case 1: return scene::make_terrain(9, 8, 1 + random.below(3));
-    case 2: return scene::make_crystal(3, 2, 1 + random.below(3));
-    case 3: return scene::make_foliage(80, 1 + random.below(3));
-    default: return scene::make_torus(12, 7);
+    case 0: return lab::make_sphere(8);
+    case 1: return lab::make_terrain(9, 8, 1 + random.below(3));
+    case 2: return lab::make_crystal(3, 2, 1 + random.below(3));
+    case 3: return lab::make_foliage(80, 1 + random.below(3));
+    default: return lab::make_torus(12, 7);
   }
 }
 
@@ -151,7 +151,7 @@ TEST(StoredMesh, OnlyTheMeshThatChangedIsBuiltAgain) {
 
 TEST(StoredMesh, EveryPartOfAMeshIsInItsKey) {
   scene::SourceMesh mesh;
-  mesh.primitives.push_back(scene::make_terrain(4, 4));
+  mesh.primitives.push_back(lab::make_terrain(4, 4));
   mesh.primitives[0].material = MaterialId(0U);
   mesh.primitives[0].colors.assign(mesh.primitives[0].positions.size(), Vec4f(0.5F));
   std::vector<scene::SourceMesh> meshes(11, mesh);

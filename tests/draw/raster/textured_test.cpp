@@ -7,7 +7,7 @@
 
 #include "draw/raster/pixel_surface.h"
 #include "draw/raster/raster.h"
-#include "scene/samples/write_png.h"
+#include "lab/samples/write_png.h"
 #include "support/mask_scene.h"
 
 namespace meshlode::draw {
@@ -33,8 +33,8 @@ TEST(PixelWeights, DerivativesAreTheLimitOfDifferences) {
 }
 
 struct CardOptions {
-  scene::Texture base, normal;  ///< empty: none
-  bool is_mirrored = false;     ///< u runs the other way
+  lab::Texture base, normal;  ///< empty: none
+  bool is_mirrored = false;   ///< u runs the other way
 };
 
 /// A square from -1 to 1 in the xy plane, seen along -z; v points down.
@@ -57,13 +57,13 @@ scene::Scene card_scene(const CardOptions& options) {
   material.uv_sets_used = 1;
   scene.materials = {material};
   std::string info, images, textures;
-  const auto add = [&](const scene::Texture& texture, const std::string& key) {
+  const auto add = [&](const lab::Texture& texture, const std::string& key) {
     if (texture.rgba.empty()) return std::string();
     const std::string index = std::to_string(scene.blobs.size());
     scene::SceneBlob blob;
     blob.name = key + ".png";
     blob.mime_type = "image/png";
-    blob.bytes = scene::encode_png(texture);
+    blob.bytes = lab::encode_png(texture);
     scene.blobs.push_back(blob);
     textures += (textures.empty() ? "" : ",") + std::string(R"({"sampler":0,"source":)") + index + "}";
     images += (images.empty() ? "" : ",") + std::string(R"({"blob":)") + index + "}";
@@ -114,8 +114,8 @@ std::uint8_t channel(const Picture& picture, std::uint32_t x, std::uint32_t y, s
   return picture.image.rgba[4 * (std::size_t{y} * picture.image.width + x) + k];
 }
 
-scene::Texture plain(std::uint32_t size, std::array<std::uint8_t, 4> color) {
-  scene::Texture out{size, size, {}};
+lab::Texture plain(std::uint32_t size, std::array<std::uint8_t, 4> color) {
+  lab::Texture out{size, size, {}};
   for (std::uint32_t i = 0; i < size * size; ++i) {
     for (const std::uint8_t c : color) out.rgba.push_back(c);
   }
@@ -124,7 +124,7 @@ scene::Texture plain(std::uint32_t size, std::array<std::uint8_t, 4> color) {
 
 /// 8 × 8 texels on 32 × 32 pixels: in the middle of a texel's four pixels its colour is the light's share of it.
 TEST(Textured, ATexelIsSeenWhereItLies) {
-  scene::Texture base{8, 8, {}};
+  lab::Texture base{8, 8, {}};
   for (std::uint32_t y = 0; y < 8; ++y) {
     for (std::uint32_t x = 0; x < 8; ++x) {
       const bool is_white = ((x * 5 + y * 3 + x * y) % 3) == 0;  // neighbours differ here and there

@@ -9,7 +9,7 @@
 #include "base/random.h"
 #include "cases/shapes.h"
 #include "hard_case.h"
-#include "scene/samples/samples.h"
+#include "lab/samples/samples.h"
 
 namespace meshlode::test::hard {
 
@@ -19,7 +19,7 @@ constexpr std::uint32_t kCells = 12;
 
 /// Every edge a crease, but for a share of the vertices.
 Result<Sample> faceted(double cells) {
-  return sample_of(scene::with_split_normals(make_lump(static_cast<std::uint32_t>(cells))));
+  return sample_of(lab::with_split_normals(make_lump(static_cast<std::uint32_t>(cells))));
 }
 
 /// A sheet that uses its texture, with coordinates by `uv`.
@@ -67,7 +67,7 @@ Result<Sample> uv_charts(double charts) {
 
 /// Normals of any length: only their direction may count.
 Result<Sample> normal_length(double length) {
-  scene::Primitive lump = scene::with_smooth_normals(make_lump(kCells));
+  scene::Primitive lump = lab::with_smooth_normals(make_lump(kCells));
   for (Vec3f& n : lump.normals) n = Vec3f(Vec3d(n) * length);
   return sample_of(std::move(lump));
 }

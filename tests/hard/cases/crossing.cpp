@@ -7,7 +7,7 @@
 #include "builder/odd_shapes.h"
 #include "cases/shapes.h"
 #include "hard_case.h"
-#include "scene/samples/samples.h"
+#include "lab/samples/samples.h"
 
 namespace meshlode::test::hard {
 
@@ -35,14 +35,14 @@ Result<Sample> crumpled(double edges) {
 
 /// A closed body of two faces that are so far apart.
 Result<Sample> blade(double thickness) {
-  Sample sample = sample_of(scene::make_blade(24, thickness));
+  Sample sample = sample_of(lab::make_blade(24, thickness));
   sample.feature = thickness;
   return sample;
 }
 
 /// A lump with a closed pocket inside, the wall between them so thick.
 Result<Sample> pocket(double wall) {
-  Sample sample = sample_of(joined(make_lump(12, 0.05), turned(scene::scaled(make_lump(12, 0.05), 1.0 - wall))));
+  Sample sample = sample_of(joined(make_lump(12, 0.05), turned(lab::scaled(make_lump(12, 0.05), 1.0 - wall))));
   sample.feature = wall;
   return sample;
 }

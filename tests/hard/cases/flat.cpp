@@ -7,8 +7,8 @@
 #include "base/random.h"
 #include "cases/shapes.h"
 #include "hard_case.h"
-#include "scene/samples/noise.h"
-#include "scene/samples/samples.h"
+#include "lab/samples/noise.h"
+#include "lab/samples/samples.h"
 
 namespace meshlode::test::hard {
 
@@ -39,9 +39,8 @@ Result<Sample> noisy_plate(double noise) {
 
 Result<Sample> cylinder(double segments) {
   const auto n = static_cast<std::uint32_t>(segments);
-  return sample_of(make_sheet(n, 24, true, false, [](double u, double v) {
-    return Vec3d(scene::cos_turns(u), 3.0 * v, -scene::sin_turns(u));
-  }));
+  return sample_of(make_sheet(
+      n, 24, true, false, [](double u, double v) { return Vec3d(lab::cos_turns(u), 3.0 * v, -lab::sin_turns(u)); }));
 }
 
 /// A cone down to its tip, which is one vertex of so many triangles.
@@ -49,7 +48,7 @@ Result<Sample> cone(double segments) {
   const auto n = static_cast<std::uint32_t>(segments);
   scene::Primitive shape = make_sheet(n, 12, true, false, [](double u, double v) {
     const double radius = 1.0 - v * (1.0 - 1.0 / 64);
-    return Vec3d(radius * scene::cos_turns(u), 2.0 * (1.0 - radius), -radius * scene::sin_turns(u));
+    return Vec3d(radius * lab::cos_turns(u), 2.0 * (1.0 - radius), -radius * lab::sin_turns(u));
   });
   const auto tip = static_cast<std::uint32_t>(shape.positions.size());
   shape.positions.emplace_back(0.0, 2.0, 0.0);

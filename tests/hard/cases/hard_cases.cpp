@@ -2,7 +2,7 @@
 #include <utility>
 
 #include "hard_case.h"
-#include "scene/samples/samples.h"
+#include "lab/samples/samples.h"
 
 namespace meshlode::test::hard {
 
@@ -20,7 +20,7 @@ std::span<const HardCase> hard_cases() {
 
 Sample sample_of(scene::Primitive shape) {
   Sample sample;
-  sample.scene = scene::as_scene(scene::as_mesh(std::move(shape)));
+  sample.scene = lab::as_scene(lab::as_mesh(std::move(shape)));
   return sample;
 }
 

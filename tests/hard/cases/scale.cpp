@@ -4,20 +4,20 @@
 
 #include "cases/shapes.h"
 #include "hard_case.h"
-#include "scene/samples/samples.h"
+#include "lab/samples/samples.h"
 
 namespace meshlode::test::hard {
 
 namespace {
 
 Result<Sample> scaled_lump(double factor) {
-  return sample_of(scene::scaled(make_lump(12), factor));
+  return sample_of(lab::scaled(make_lump(12), factor));
 }
 
 /// A lump `factor` times as large as the one beside it, in one mesh.
 Result<Sample> two_sizes(double factor) {
   const scene::Primitive small = make_lump(10);
-  const scene::Primitive large = mapped(scene::scaled(make_lump(10), factor),
+  const scene::Primitive large = mapped(lab::scaled(make_lump(10), factor),
                                         [&](const Vec3d& p) { return p + Vec3d(2.0 * factor + 2.0, 0.0, 0.0); });
   Sample sample = sample_of(joined(small, large));
   sample.feature = 0.1;  // of the small one's bumps

@@ -3,8 +3,8 @@
 
 #include <utility>
 
-#include "scene/samples/noise.h"
-#include "scene/samples/samples.h"
+#include "lab/samples/noise.h"
+#include "lab/samples/samples.h"
 
 namespace meshlode::test::hard {
 
@@ -36,8 +36,8 @@ scene::Primitive make_bumpy_plane(std::uint32_t n, double height) {
 }
 
 scene::Primitive make_lump(std::uint32_t n, double height) {
-  return mapped(scene::make_sphere(n), [&](const Vec3d& p) {
-    return p * (1.0 + height * scene::fractal_noise(3.0 * p + Vec3d(0.3, 0.7, 0.1), 3, 5));
+  return mapped(lab::make_sphere(n), [&](const Vec3d& p) {
+    return p * (1.0 + height * lab::fractal_noise(3.0 * p + Vec3d(0.3, 0.7, 0.1), 3, 5));
   });
 }
 
@@ -49,10 +49,10 @@ scene::Primitive make_klein(std::uint32_t n) {
   for (std::uint32_t i = 0; i < n; ++i) {
     for (std::uint32_t j = 0; j < n; ++j) {
       const double u = static_cast<double>(i) / n, v = static_cast<double>(j) / n;
-      const double c = scene::cos_turns(0.5 * u), s = scene::sin_turns(0.5 * u);
-      const double along = scene::sin_turns(v), twice = scene::sin_turns(2.0 * v);
+      const double c = lab::cos_turns(0.5 * u), s = lab::sin_turns(0.5 * u);
+      const double along = lab::sin_turns(v), twice = lab::sin_turns(2.0 * v);
       const double radius = 2.0 + c * along - s * twice;
-      bottle.positions.emplace_back(radius * scene::cos_turns(u), radius * scene::sin_turns(u), s * along + c * twice);
+      bottle.positions.emplace_back(radius * lab::cos_turns(u), radius * lab::sin_turns(u), s * along + c * twice);
     }
   }
   const auto at = [&](std::uint32_t i, std::uint32_t j) {

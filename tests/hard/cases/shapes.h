@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Surfaces that several cases start from, and what scene/samples and tests/builder/odd_shapes.h do not have. No math
+// Surfaces that several cases start from, and what lab/samples and tests/builder/odd_shapes.h do not have. No math
 // library but sqrt, floor and ldexp: a parameter gives the same bits with every compiler.
 #pragma once
 

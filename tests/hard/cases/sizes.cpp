@@ -7,7 +7,7 @@
 #include "builder/odd_shapes.h"
 #include "cases/shapes.h"
 #include "hard_case.h"
-#include "scene/samples/samples.h"
+#include "lab/samples/samples.h"
 
 namespace meshlode::test::hard {
 
@@ -32,7 +32,7 @@ Result<Sample> fan(double valence) {
 }
 
 Result<Sample> loose(double triangles) {
-  Sample sample = sample_of(scene::make_loose_pieces(static_cast<std::uint32_t>(triangles / 2.0)));
+  Sample sample = sample_of(lab::make_loose_pieces(static_cast<std::uint32_t>(triangles / 2.0)));
   sample.crosses_itself = true;
   return sample;
 }

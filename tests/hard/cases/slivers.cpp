@@ -8,14 +8,14 @@
 #include "builder/odd_shapes.h"
 #include "cases/shapes.h"
 #include "hard_case.h"
-#include "scene/samples/samples.h"
+#include "lab/samples/samples.h"
 
 namespace meshlode::test::hard {
 
 namespace {
 
 Result<Sample> needles(double aspect) {
-  return sample_of(scene::make_slivers(2000, aspect));
+  return sample_of(lab::make_slivers(2000, aspect));
 }
 
 /// A sheet whose cells each have a vertex that lies 1 / aspect off their diagonal: a cap on either side of it.

@@ -7,8 +7,8 @@
 #include "builder/odd_shapes.h"
 #include "cases/shapes.h"
 #include "hard_case.h"
-#include "scene/samples/noise.h"
-#include "scene/samples/samples.h"
+#include "lab/samples/noise.h"
+#include "lab/samples/samples.h"
 
 namespace meshlode::test::hard {
 
@@ -22,7 +22,7 @@ Result<Sample> book(double sheets) {
   for (std::uint32_t page = 0; page < pages; ++page) {
     const double turn = static_cast<double>(page) / pages;
     const scene::Primitive one = make_sheet(n, n, false, false, [&](double u, double v) {
-      return Vec3d(u * scene::cos_turns(turn), u * scene::sin_turns(turn), v);  // u = 0: the same bits in every page
+      return Vec3d(u * lab::cos_turns(turn), u * lab::sin_turns(turn), v);  // u = 0: the same bits in every page
     });
     shape = page == 0 ? one : joined(shape, one);
   }
@@ -37,8 +37,8 @@ Result<Sample> pinched(double bodies) {
     const double turn = static_cast<double>(i) / count;
     const double size = 1.0 / count;
     // A body whose vertex 0 is moved to the origin, which all share.
-    scene::Primitive body = mapped(scene::make_sphere(6, size), [&](const Vec3d& p) {
-      return p + Vec3d(2.0 * scene::cos_turns(turn), 2.0 * scene::sin_turns(turn), 0.0);
+    scene::Primitive body = mapped(lab::make_sphere(6, size), [&](const Vec3d& p) {
+      return p + Vec3d(2.0 * lab::cos_turns(turn), 2.0 * lab::sin_turns(turn), 0.0);
     });
     body.positions[0] = Vec3d(0.0);
     shape = i == 0 ? body : joined(shape, body);
@@ -47,7 +47,7 @@ Result<Sample> pinched(double bodies) {
 }
 
 Result<Sample> moebius(double around) {
-  return sample_of(scene::make_moebius(static_cast<std::uint32_t>(around), 8));
+  return sample_of(lab::make_moebius(static_cast<std::uint32_t>(around), 8));
 }
 
 Result<Sample> klein(double around) {
@@ -70,7 +70,7 @@ Result<Sample> holes(double count) {
   scene::Primitive shape;
   const auto handles = static_cast<std::uint32_t>(count);
   for (std::uint32_t i = 0; i < handles; ++i) {
-    const scene::Primitive torus = mapped(scene::make_torus(12, 6, 1.0, 0.3),
+    const scene::Primitive torus = mapped(lab::make_torus(12, 6, 1.0, 0.3),
                                           [&](const Vec3d& p) { return p + Vec3d(1.5 * i, 0.0, 0.1 * (i % 2)); });
     shape = i == 0 ? torus : joined(shape, torus);
   }

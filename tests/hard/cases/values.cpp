@@ -12,8 +12,8 @@
 
 #include "cases/shapes.h"
 #include "hard_case.h"
+#include "lab/samples/samples.h"
 #include "scene/import/import.h"
-#include "scene/samples/samples.h"
 
 namespace meshlode::test::hard {
 

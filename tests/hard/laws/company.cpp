@@ -2,15 +2,15 @@
 // Meshes are built one by one and share nothing but the file: a neighbour changes none of a mesh's content.
 #include <utility>
 
+#include "lab/samples/samples.h"
 #include "laws/outcomes.h"
 #include "laws/same_mesh.h"
-#include "scene/samples/samples.h"
 
 namespace meshlode::test::hard {
 
 LawResult check_company(const Built& base) {
   if (base.sample.scene.meshes.size() != 1) return not_asked("not one mesh");
-  scene::SourceMesh neighbour = scene::as_mesh(scene::make_rock(10), "neighbour");
+  scene::SourceMesh neighbour = lab::as_mesh(lab::make_rock(10), "neighbour");
   for (const bool is_first : {false, true}) {
     Sample sample = base.sample;
     auto& meshes = sample.scene.meshes;

@@ -8,8 +8,8 @@
 #include "builder/builder.h"
 #include "judge/metrics/attribute_drift.h"
 #include "judge/metrics/seams.h"
+#include "lab/samples/samples.h"
 #include "run/select/select.h"
-#include "scene/samples/samples.h"
 
 namespace meshlode::judge {
 namespace {
@@ -99,7 +99,7 @@ TEST(Drift, IsNotHiddenBySlidingAlongASeam) {
 }
 
 TEST(Drift, OfAFlatShadedCubeIsZeroAtItsCreases) {
-  const scene::SourceMesh coarse = scene::as_mesh(scene::make_cube(1)), fine = scene::as_mesh(scene::make_cube(9));
+  const scene::SourceMesh coarse = lab::as_mesh(lab::make_cube(1)), fine = lab::as_mesh(lab::make_cube(9));
   const DriftReport r = drift(shaded_surface_of_source(coarse), shaded_surface_of_source(fine));
   EXPECT_GT(r.normal_a_to_b.points, 20000U);
   EXPECT_LE(std::max(r.normal_a_to_b.max, r.normal_b_to_a.max), 1e-4);
@@ -130,13 +130,13 @@ TEST(Drift, SeamsAreEdgesWhoseTrianglesDisagree) {
 }
 
 TEST(Drift, OfLevelZeroIsItsQuantization) {
-  scene::SourceMesh mesh = scene::as_mesh(scene::with_smooth_normals(scene::make_torus(80, 40)));
+  scene::SourceMesh mesh = lab::as_mesh(lab::with_smooth_normals(lab::make_torus(80, 40)));
   scene::Primitive& p = mesh.primitives[0];
   for (const Vec3d& at : p.positions) p.uvs[0].push_back(Vec2f(Vec2d(at.x, at.y)));
   builder::PipelineOptions options;
   options.attributes = AttributeChoice::kAll;
   builder::PipelineReport report;
-  auto bytes = builder::build_lode(scene::as_scene(mesh), options, {}, report);
+  auto bytes = builder::build_lode(lab::as_scene(mesh), options, {}, report);
   ASSERT_TRUE(bytes.ok()) << bytes.error().message();
   const auto asset = run::Asset::from_vector(std::move(*bytes));
   ASSERT_TRUE(asset.ok());

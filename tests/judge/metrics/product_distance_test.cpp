@@ -9,7 +9,7 @@
 
 #include "judge/metrics/product_distance.h"
 #include "judge/metrics/product_tree.h"
-#include "scene/samples/samples.h"
+#include "lab/samples/samples.h"
 #include "support/random.h"
 
 namespace meshlode::judge {
@@ -60,7 +60,7 @@ ShadedSurface make_square(const Square& o) {
 }
 
 ShadedSurface shaded(const scene::Primitive& shape) {
-  return shaded_surface_of_source(scene::as_mesh(shape));
+  return shaded_surface_of_source(lab::as_mesh(shape));
 }
 
 /// A soup of any triangles, some of them needles, segments and points, with UVs and unit normals that turn by up to
@@ -263,7 +263,7 @@ TEST(ProductDistance, NeverFallsWhereMoreCounts) {
 
 TEST(ProductDistance, IsZeroBetweenSurfacesThatAreOneHoweverTheyAreCut) {
   EXPECT_LE(largest(make_square({}), make_square({.n = 7}), scales_of(1.0, 0.5)), 1e-6);
-  const ShadedSurface sphere = shaded(scene::with_smooth_normals(scene::make_sphere(6)));
+  const ShadedSurface sphere = shaded(lab::with_smooth_normals(lab::make_sphere(6)));
   EXPECT_LE(largest(sphere, sphere, scales_of(1.0, 0.5)), 1e-8);
 }
 

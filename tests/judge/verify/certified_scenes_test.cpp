@@ -17,9 +17,9 @@
 #include "judge/metrics/metrics.h"
 #include "judge/verify/promises.h"
 #include "judge/verify/verify.h"
+#include "lab/samples/samples.h"
 #include "run/read/asset.h"
 #include "run/select/select.h"
-#include "scene/samples/samples.h"
 #include "support/random.h"
 
 namespace meshlode::judge {
@@ -37,7 +37,7 @@ struct CertifiedCase {
 
 /// Two sheets 1e-4 apart, closed, with noise ten times that: they run through each other.
 scene::Primitive make_noisy_sheets(std::uint32_t n) {
-  scene::Primitive shape = scene::make_blade(n, 1e-4);
+  scene::Primitive shape = lab::make_blade(n, 1e-4);
   test::Random random(17);
   for (Vec3d& p : shape.positions) p += 1e-3 * Vec3d(random.signed_unit(), random.signed_unit(), random.signed_unit());
   return shape;
@@ -45,7 +45,7 @@ scene::Primitive make_noisy_sheets(std::uint32_t n) {
 
 /// An open height field with holes of all sizes in it.
 scene::Primitive make_torn_terrain(std::uint32_t n) {
-  scene::Primitive shape = scene::make_terrain(n, n);
+  scene::Primitive shape = lab::make_terrain(n, n);
   test::Random random(18);
   std::vector<std::uint32_t> kept;
   for (std::size_t t = 0; t < shape.indices.size(); t += 3) {
@@ -66,19 +66,19 @@ scene::Primitive moved(scene::Primitive shape, const Vec3d& by) {
 
 const std::vector<CertifiedCase>& certified_cases() {
   static const std::vector<CertifiedCase> all{
-      {"ClosedAndSmooth", [] { return scene::make_rock(20); }},
+      {"ClosedAndSmooth", [] { return lab::make_rock(20); }},
       {"OpenBordersAndHoles", [] { return make_torn_terrain(44); }},
       {"ThinSheetsThroughEachOther", [] { return make_noisy_sheets(26); }},
-      {"BumpsOfAThousandthAMillionAway", [] { return scene::make_far_plane(28); }},
+      {"BumpsOfAThousandthAMillionAway", [] { return lab::make_far_plane(28); }},
       {"SphereAHundredThousandAway",
-       [] { return moved(scene::scaled(scene::make_sphere(10), 1e-3), Vec3d(1e5, -2e5, 3e5)); }},
+       [] { return moved(lab::scaled(lab::make_sphere(10), 1e-3), Vec3d(1e5, -2e5, 3e5)); }},
       {"DegenerateTrianglesThatStickOut", [] { return test::make_ball_with_hairs(); }},
-      {"TrianglesWithoutAreaInAClosedSurface", [] { return scene::make_zero_areas(12); }},
-      {"Slivers", [] { return scene::make_slivers(800, 1e5); }},
-      {"SheetsThatShareAnEdge", [] { return scene::make_three_sheets(16); }},
-      {"LooseBoxes", [] { return scene::make_box_soup(120); }},
-      {"SizeOfAMillionth", [] { return scene::scaled(scene::make_torus(36, 24), 1e-6); }},
-      {"SizeOfABillion", [] { return scene::scaled(scene::make_torus(36, 24), 1e9); }},
+      {"TrianglesWithoutAreaInAClosedSurface", [] { return lab::make_zero_areas(12); }},
+      {"Slivers", [] { return lab::make_slivers(800, 1e5); }},
+      {"SheetsThatShareAnEdge", [] { return lab::make_three_sheets(16); }},
+      {"LooseBoxes", [] { return lab::make_box_soup(120); }},
+      {"SizeOfAMillionth", [] { return lab::scaled(lab::make_torus(36, 24), 1e-6); }},
+      {"SizeOfABillion", [] { return lab::scaled(lab::make_torus(36, 24), 1e9); }},
   };
   return all;
 }
@@ -86,7 +86,7 @@ const std::vector<CertifiedCase>& certified_cases() {
 class CertifiedScene : public testing::TestWithParam<CertifiedCase> {
  protected:
   void SetUp() override {
-    scene_ = scene::as_scene(scene::as_mesh(GetParam().make()));
+    scene_ = lab::as_scene(lab::as_mesh(GetParam().make()));
     asset_.push_back(build_scene(format::Promise::kPosition));
     auto decoded = run::decode_all(asset_[0]);
     ASSERT_TRUE(decoded.ok()) << decoded.error().message();

@@ -12,9 +12,9 @@
 #include "judge/metrics/coverage.h"
 #include "judge/validate/edit.h"
 #include "judge/verify/verify.h"
+#include "lab/samples/samples.h"
 #include "run/read/asset.h"
 #include "run/select/select.h"
-#include "scene/samples/samples.h"
 #include "support/sanitized.h"
 
 namespace meshlode::judge {
@@ -36,7 +36,7 @@ std::vector<std::uint8_t> build_aggregate(const scene::Scene& scene,
 scene::Scene scene_of(scene::Primitive shape) {
   shape.normals.clear();
   shape.uvs[0].clear();
-  return scene::as_scene(scene::as_mesh(std::move(shape)));
+  return lab::as_scene(lab::as_mesh(std::move(shape)));
 }
 
 std::string found_in(const std::vector<std::uint8_t>& bytes, const scene::Scene& scene) {
@@ -54,8 +54,8 @@ std::uint32_t groups_of(const AssetEdit& edit) {
 }
 
 TEST(Aggregates, OfEveryKindHold) {
-  for (const scene::Primitive& shape : {scene::make_grass(1500), scene::make_box_soup(300), scene::make_crown(1500),
-                                        scene::make_loose_pieces(800), scene::scaled(scene::make_grass(600), 1e-5)}) {
+  for (const scene::Primitive& shape : {lab::make_grass(1500), lab::make_box_soup(300), lab::make_crown(1500),
+                                        lab::make_loose_pieces(800), lab::scaled(lab::make_grass(600), 1e-5)}) {
     const scene::Scene scene = scene_of(shape);
     const std::vector<std::uint8_t> bytes = build_aggregate(scene);
     EXPECT_EQ(found_in(bytes, scene), "");
@@ -68,8 +68,8 @@ TEST(Aggregates, OfEveryKindHold) {
 /// A handful of cards stands for all of them soon, and is as large as the mesh.
 TEST(Aggregates, SmallOnesHold) {
   for (const std::uint32_t count : {150U, 387U, 1617U, 3184U}) {
-    for (const scene::Primitive& shape : {scene::make_grass(count), scene::make_box_soup(count / 5 + 10),
-                                          scene::make_crown(count), scene::make_loose_pieces(count)}) {
+    for (const scene::Primitive& shape : {lab::make_grass(count), lab::make_box_soup(count / 5 + 10),
+                                          lab::make_crown(count), lab::make_loose_pieces(count)}) {
       const scene::Scene scene = scene_of(shape);
       EXPECT_EQ(found_in(build_aggregate(scene), scene), "") << count;
     }
@@ -77,8 +77,8 @@ TEST(Aggregates, SmallOnesHold) {
 }
 
 TEST(Aggregates, OfOtherKindsHoldAndHaveLevels) {
-  for (const std::string& kind : scene::aggregate_kinds()) {
-    const scene::Scene scene = scene_of(scene::make_aggregate_kind(kind, 3000));
+  for (const std::string& kind : lab::aggregate_kinds()) {
+    const scene::Scene scene = scene_of(lab::make_aggregate_kind(kind, 3000));
     const std::vector<std::uint8_t> bytes = build_aggregate(scene);
     EXPECT_EQ(found_in(bytes, scene), "") << kind;
     const Result<run::Asset> asset = run::Asset::from_vector(bytes);
@@ -91,7 +91,7 @@ TEST(Aggregates, OfOtherKindsHoldAndHaveLevels) {
 }
 
 TEST(Aggregates, OfAWallNoDirectionIsFarOffAtThirtyPixels) {
-  const std::vector<std::uint8_t> bytes = build_aggregate(scene_of(scene::make_aggregate_kind("ivy", 10000)));
+  const std::vector<std::uint8_t> bytes = build_aggregate(scene_of(lab::make_aggregate_kind("ivy", 10000)));
   const Result<run::Asset> asset = run::Asset::from_vector(bytes);
   ASSERT_TRUE(asset.ok());
   const auto triangles_at = [&](double size) {
@@ -116,14 +116,14 @@ TEST(Aggregates, OfAWallNoDirectionIsFarOffAtThirtyPixels) {
 }
 
 TEST(Aggregates, OfEveryTierHold) {
-  const scene::Scene scene = scene_of(scene::make_grass(800));
+  const scene::Scene scene = scene_of(lab::make_grass(800));
   for (const format::ErrorTier tier : {format::ErrorTier::kQem, format::ErrorTier::kCertified}) {
     EXPECT_EQ(found_in(build_aggregate(scene, tier), scene), "");
   }
 }
 
 TEST(Aggregates, ErrorsThatAreTooSmallAreFound) {
-  const scene::Scene scene = scene_of(scene::make_grass(1500));
+  const scene::Scene scene = scene_of(lab::make_grass(1500));
   AssetEdit edit(build_aggregate(scene));
   for (std::uint32_t g = 0; g < groups_of(edit); ++g) {
     edit.group(g, [](auto& group) {
@@ -142,7 +142,7 @@ TEST(Aggregates, ErrorsThatAreTooSmallAreFound) {
 }
 
 TEST(Aggregates, WithoutTheFlagTheirBordersAreNone) {
-  const scene::Scene scene = scene_of(scene::make_box_soup(300));  // closed, and cards are not
+  const scene::Scene scene = scene_of(lab::make_box_soup(300));  // closed, and cards are not
   AssetEdit edit(build_aggregate(scene));
   edit.header([](auto& header) { header.version = format::kPlainVersion; });
   for (std::uint32_t g = 0; g < groups_of(edit); ++g) {
@@ -153,7 +153,7 @@ TEST(Aggregates, WithoutTheFlagTheirBordersAreNone) {
 }
 
 TEST(Aggregates, TheirMaterialsAreWhole) {
-  scene::Scene scene = scene_of(scene::make_grass(800));
+  scene::Scene scene = scene_of(lab::make_grass(800));
   scene.materials[0].double_sided = false;
   const std::vector<std::uint8_t> bytes = build_aggregate(scene);
   const Result<run::Asset> asset = run::Asset::from_vector(bytes);
@@ -169,14 +169,14 @@ TEST(Aggregates, TheirMaterialsAreWhole) {
 
 /// A trunk that goes by distances and leaves that go by coverage, in one mesh.
 scene::Scene trunk_and_leaves() {
-  scene::SourceMesh mesh = scene::as_mesh(scene::scaled(scene::make_sphere(24), 0.4));
-  mesh.primitives.push_back(scene::make_crown(2000));
+  scene::SourceMesh mesh = lab::as_mesh(lab::scaled(lab::make_sphere(24), 0.4));
+  mesh.primitives.push_back(lab::make_crown(2000));
   for (std::uint32_t m = 0; m < 2; ++m) {
     mesh.primitives[m].material = MaterialId(m);
     mesh.primitives[m].normals.clear();
     mesh.primitives[m].uvs[0].clear();
   }
-  scene::Scene scene = scene::as_scene(std::move(mesh));
+  scene::Scene scene = lab::as_scene(std::move(mesh));
   scene.materials.resize(2, scene.materials[0]);
   return scene;
 }

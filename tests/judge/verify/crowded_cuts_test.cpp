@@ -11,15 +11,15 @@
 #include "builder/builder.h"
 #include "judge/validate/edit.h"
 #include "judge/verify/verify.h"
+#include "lab/samples/samples.h"
 #include "run/read/asset.h"
-#include "scene/samples/samples.h"
 
 namespace meshlode::judge {
 namespace {
 
 /// Tori as thin as threads: their tubes fold together on coarse levels.
 scene::Scene threads() {
-  return scene::as_scene(scene::as_mesh(scene::make_torus(300, 8, 1.0, 0.01)));
+  return lab::as_scene(lab::as_mesh(lab::make_torus(300, 8, 1.0, 0.01)));
 }
 
 std::vector<std::uint8_t> build_threads(bool keep_topology) {

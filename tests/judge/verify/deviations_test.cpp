@@ -12,8 +12,8 @@
 #include "judge/validate/edit.h"
 #include "judge/validate/validate.h"
 #include "judge/verify/verify.h"
+#include "lab/samples/samples.h"
 #include "run/read/asset.h"
-#include "scene/samples/samples.h"
 
 namespace meshlode::judge {
 namespace {
@@ -27,7 +27,7 @@ struct Built {
 
 Built build_rock(format::ErrorTier tier) {
   Built built;
-  built.scene = scene::as_scene(scene::as_mesh(scene::with_smooth_normals(scene::make_rock(16))));
+  built.scene = lab::as_scene(lab::as_mesh(lab::with_smooth_normals(lab::make_rock(16))));
   builder::PipelineOptions options;
   options.error_tier = tier;
   builder::PipelineReport report;

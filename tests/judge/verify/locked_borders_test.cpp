@@ -20,15 +20,15 @@
 #include "drawn_surface.h"
 #include "judge/verify/locked_borders.h"
 #include "judge/verify/verify.h"
+#include "lab/samples/samples.h"
 #include "run/decode/decode.h"
 #include "run/read/asset.h"
-#include "scene/samples/samples.h"
 
 namespace meshlode::judge {
 namespace {
 
 scene::Scene tile() {
-  return scene::as_scene(scene::as_mesh(scene::make_plane(32)));
+  return lab::as_scene(lab::as_mesh(lab::make_plane(32)));
 }
 
 /// The tile with its border locked but for so many of its vertices, none of them a corner: nothing else holds them,

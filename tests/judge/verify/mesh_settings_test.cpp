@@ -11,8 +11,8 @@
 #include "builder/builder.h"
 #include "judge/validate/edit.h"
 #include "judge/verify/verify.h"
+#include "lab/samples/samples.h"
 #include "run/read/asset.h"
-#include "scene/samples/samples.h"
 
 namespace meshlode::judge {
 namespace {
@@ -20,9 +20,9 @@ namespace {
 /// Two spheres with smooth normals; the second is coarser, of another tier, and without its normals.
 scene::Scene two_spheres() {
   const auto sphere = [](const char* name) {
-    return scene::as_mesh(scene::with_smooth_normals(scene::make_sphere(10)), name);
+    return lab::as_mesh(lab::with_smooth_normals(lab::make_sphere(10)), name);
   };
-  scene::Scene scene = scene::as_scene(sphere("first"));
+  scene::Scene scene = lab::as_scene(sphere("first"));
   scene.meshes.push_back(sphere("second"));
   scene.instances.emplace_back().mesh = MeshId(1U);
   return scene;

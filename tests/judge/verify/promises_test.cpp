@@ -84,7 +84,7 @@ TEST(PromisesOf, TexelsSayNothingOfAppearance) {
 }
 
 TEST(PromisesOf, PositionsAloneAreNotLookedFor) {
-  const Built built = build_promised(scene::as_scene(scene::as_mesh(scene::make_rock(12))), format::Promise::kPosition);
+  const Built built = build_promised(lab::as_scene(lab::as_mesh(lab::make_rock(12))), format::Promise::kPosition);
   const VerifyReport report = verify_bytes(built.bytes, built.scene);
   EXPECT_EQ(details_of(report), "");
   EXPECT_TRUE(report.promises.empty());

@@ -14,7 +14,7 @@
 #include "base/vec.h"
 #include "builder/builder.h"
 #include "builder/stage_options.h"
-#include "scene/samples/samples.h"
+#include "lab/samples/samples.h"
 #include "support/random.h"
 
 namespace meshlode::lab {
@@ -53,7 +53,7 @@ TEST(Experiment, TheAssetSaysWhatItIs) {
   builder::PipelineOptions options;
   options.hooks = &hooks;
   builder::PipelineReport report;
-  const auto bytes = builder::build_lode(scene::as_scene(scene::as_mesh(scene::make_rock(12))), options, {}, report);
+  const auto bytes = builder::build_lode(lab::as_scene(lab::as_mesh(lab::make_rock(12))), options, {}, report);
   ASSERT_TRUE(bytes);
   const std::string text(bytes->begin(), bytes->end());
   EXPECT_NE(text.find("\"experimental\":" + hooks.record), std::string::npos);
@@ -66,7 +66,7 @@ TEST(Experiment, EachCareAndTheOtherSimplifierGiveAnAssetOfTheirOwn) {
     builder::PipelineOptions options;
     options.hooks = hooks;
     builder::PipelineReport report;
-    auto bytes = builder::build_lode(scene::as_scene(scene::as_mesh(scene::make_rock(20))), options, {}, report);
+    auto bytes = builder::build_lode(lab::as_scene(lab::as_mesh(lab::make_rock(20))), options, {}, report);
     ASSERT_TRUE(bytes);
     assets.insert(std::move(*bytes));
   };

@@ -15,7 +15,7 @@
 #include "builder/prepare/prepare.h"
 #include "builder/simplify/border_rule.h"
 #include "builder/simplify/two_charts.h"
-#include "scene/samples/samples.h"
+#include "lab/samples/samples.h"
 #include "support/border_chain.h"
 #include "support/sanitized.h"
 
@@ -30,7 +30,7 @@ using testing_support::point;
 using testing_support::Point;
 
 SimplifyInput as_input(const scene::Primitive& shape, const AttributeLayout& layout = {}) {
-  const PreparedMesh mesh = *prepare_mesh(scene::as_mesh(shape), layout, {});
+  const PreparedMesh mesh = *prepare_mesh(lab::as_mesh(shape), layout, {});
   SimplifyInput input;
   input.grid = mesh.grid;
   input.layout = mesh.layout;
@@ -162,7 +162,7 @@ std::size_t count_torn(const SimplifyInput& input, const SimplifyResult& result,
 TEST(OpenMeshDecimater, ACurvedPatchReachesItsTargetAndKeepsItsLockedBorder) {
   AttributeLayout layout;
   layout.has_normal = true;
-  SimplifyInput input = as_input(scene::with_smooth_normals(scene::make_terrain(24, 24)), layout);
+  SimplifyInput input = as_input(lab::with_smooth_normals(lab::make_terrain(24, 24)), layout);
   lock_border(input);
   std::set<Point> locked;
   for (std::size_t p = 0; p < input.positions.size(); ++p) {
@@ -183,7 +183,7 @@ TEST(OpenMeshDecimater, ACurvedPatchReachesItsTargetAndKeepsItsLockedBorder) {
 }
 
 TEST(OpenMeshDecimater, ASphereStaysNearTheSphere) {
-  const SimplifyInput input = as_input(scene::make_sphere(20));
+  const SimplifyInput input = as_input(lab::make_sphere(20));
   const SimplifyResult result = simplify(input, 300);
   EXPECT_EQ(fault_of(input, result), "");
   EXPECT_LE(result.triangles.size(), 300U);
@@ -201,7 +201,7 @@ TEST(OpenMeshDecimater, ASphereStaysNearTheSphere) {
 /// Also where roundings make its errors a little less than nothing.
 TEST(OpenMeshDecimater, AFlatPatchCostsNothing) {
   for (const bool is_tilted : {false, true}) {
-    SimplifyInput input = as_input(scene::make_plane(16));
+    SimplifyInput input = as_input(lab::make_plane(16));
     lock_border(input);
     for (Vec3i& p : input.positions) p.y = is_tilted ? p.x + 3 * p.z : p.y;
     const SimplifyResult result = simplify(input, 1);
@@ -253,14 +253,14 @@ TEST(OpenMeshDecimater, NoTextureCrossesItsSeam) {
 TEST(OpenMeshDecimater, CreasesOfSplitNormalsDoNotStopIt) {
   AttributeLayout layout;
   layout.has_normal = true;
-  const SimplifyInput input = as_input(scene::with_split_normals(scene::make_sphere(16)), layout);
+  const SimplifyInput input = as_input(lab::with_split_normals(lab::make_sphere(16)), layout);
   const SimplifyResult result = halve(input);
   EXPECT_EQ(fault_of(input, result), "");
   EXPECT_LE(result.triangles.size(), input.triangles.size() / 2);
 }
 
 TEST(OpenMeshDecimater, MaterialsKeepTheirBorder) {
-  SimplifyInput input = as_input(scene::make_sphere(12));
+  SimplifyInput input = as_input(lab::make_sphere(12));
   const auto height = [](const auto& surface, const WedgeTriangle& t) {
     return corner(surface, t, 0)[1] + corner(surface, t, 1)[1] + corner(surface, t, 2)[1];
   };
@@ -284,9 +284,9 @@ TEST(OpenMeshDecimater, MaterialsKeepTheirBorder) {
 /// What OpenMesh refuses or aborts at: edges of three sheets, cones tip to tip, needles, triangles without area and
 /// twice over, and a band with one side.
 TEST(OpenMeshDecimater, WhatItDoesNotTakeIsCarriedThrough) {
-  const scene::Primitive shapes[] = {
-      scene::make_three_sheets(12), scene::make_double_cone(80), scene::make_slivers(200), scene::make_moebius(60, 6),
-      scene::make_duplicates(10),   scene::make_zero_areas(10),  scene::make_blade(16),    scene::make_box_soup(40)};
+  const scene::Primitive shapes[] = {lab::make_three_sheets(12), lab::make_double_cone(80), lab::make_slivers(200),
+                                     lab::make_moebius(60, 6),   lab::make_duplicates(10),  lab::make_zero_areas(10),
+                                     lab::make_blade(16),        lab::make_box_soup(40)};
   SplitMix64 random(42);
   for (const scene::Primitive& shape : shapes) {
     for (int trial = 0; trial < (test::kIsSanitized ? 2 : 4); ++trial) {
@@ -374,7 +374,7 @@ TEST(OpenMeshDecimater, RandomSoupsKeepTheContract) {
 /// Random surfaces proper: patches of a torus with random holes and locks.
 TEST(OpenMeshDecimater, PatchesWithHolesKeepTheContract) {
   SplitMix64 random(11);
-  const SimplifyInput whole = as_input(scene::make_torus(24, 12));
+  const SimplifyInput whole = as_input(lab::make_torus(24, 12));
   for (int i = 0; i < (test::kIsSanitized ? 20 : 60); ++i) {
     SimplifyInput input = whole;
     std::vector<WedgeTriangle> kept;
@@ -395,7 +395,7 @@ TEST(OpenMeshDecimater, PatchesWithHolesKeepTheContract) {
 TEST(OpenMeshDecimater, ItGivesTheSameEachTime) {
   AttributeLayout layout;
   layout.has_normal = true;
-  const scene::Primitive rock = scene::with_smooth_normals(scene::make_rock(16));
+  const scene::Primitive rock = lab::with_smooth_normals(lab::make_rock(16));
   const SimplifyInput one = as_input(rock, layout), other = as_input(rock, layout);  // at other addresses
   const SimplifyResult first = halve(one), second = halve(other);
   EXPECT_EQ(first.triangles, second.triangles);
@@ -405,7 +405,7 @@ TEST(OpenMeshDecimater, ItGivesTheSameEachTime) {
 }
 
 TEST(OpenMeshDecimater, EverythingLockedIsLeftAloneAndSaysSo) {
-  SimplifyInput input = as_input(scene::make_sphere(6));
+  SimplifyInput input = as_input(lab::make_sphere(6));
   input.is_locked.assign(input.is_locked.size(), 1);
   const SimplifyResult result = halve(input);
   EXPECT_EQ(result.triangles.size(), input.triangles.size());
@@ -413,7 +413,7 @@ TEST(OpenMeshDecimater, EverythingLockedIsLeftAloneAndSaysSo) {
 }
 
 TEST(OpenMeshDecimater, LoosePiecesAreAReasonAndNothingIsFine) {
-  const SimplifyInput pieces = as_input(scene::make_loose_pieces(90));
+  const SimplifyInput pieces = as_input(lab::make_loose_pieces(90));
   EXPECT_EQ(simplify(pieces, 4).reason, StuckReason::kComponents);
   SimplifyInput nothing;
   EXPECT_TRUE(simplify(nothing, 0).triangles.empty());

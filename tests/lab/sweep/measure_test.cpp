@@ -15,10 +15,10 @@
 #include "builder/builder.h"
 #include "judge/metrics/cut_judge.h"
 #include "judge/metrics/cut_search.h"
+#include "lab/samples/samples.h"
 #include "lab/sweep/draw_views.h"
 #include "lab/sweep/metrics.h"
 #include "run/decode/decode.h"
-#include "scene/samples/samples.h"
 
 namespace meshlode::lab {
 namespace {
@@ -29,7 +29,7 @@ struct Sample {
 };
 
 Sample make_sample() {
-  scene::Scene scene = scene::as_scene(scene::as_mesh(scene::make_torus(100, 50)));
+  scene::Scene scene = lab::as_scene(lab::as_mesh(lab::make_torus(100, 50)));
   for (Vec3d& p : scene.meshes[0].primitives[0].positions) p += 0.01 * glm::sin(p * 17.0);  // not too smooth
   builder::PipelineReport report;
   auto bytes = builder::build_lode(scene, {}, {}, report);

@@ -8,8 +8,8 @@
 #include <gtest/gtest.h>
 
 #include "base/random.h"
+#include "lab/samples/samples.h"
 #include "scene/detect/detect.h"
-#include "scene/samples/samples.h"
 
 namespace meshlode::scene {
 namespace {
@@ -77,15 +77,15 @@ TEST(DetectHostile, AnyNumbersAndAnyIndices) {
 
 TEST(DetectHostile, NothingAtAll) {
   EXPECT_TRUE(examine_mesh(SourceMesh{}, {}).empty());
-  EXPECT_TRUE(examine_mesh(as_mesh(Primitive{}), {}).empty());
+  EXPECT_TRUE(examine_mesh(lab::as_mesh(Primitive{}), {}).empty());
   const std::vector<Fault> of_none = examine_scene(Scene{});
   ASSERT_EQ(of_none.size(), 1U);
   EXPECT_EQ(of_none[0].kind, FaultKind::kNothingToDraw);
   Primitive rest;
   rest.indices = {7, 7};  // no triangle
-  EXPECT_TRUE(examine_mesh(as_mesh(rest), {}).empty());
+  EXPECT_TRUE(examine_mesh(lab::as_mesh(rest), {}).empty());
   rest.indices.push_back(7);
-  const std::vector<Fault> faults = examine_mesh(as_mesh(rest), {});
+  const std::vector<Fault> faults = examine_mesh(lab::as_mesh(rest), {});
   ASSERT_EQ(faults.size(), 1U);
   EXPECT_EQ(faults[0].kind, FaultKind::kNotFinite);
 }
@@ -111,7 +111,7 @@ TEST(DetectHostile, ManyThingsInOnePlace) {
   }
   point.indices = heap.indices;
   point.positions.assign(heap.positions.size(), Vec3d(3.0));
-  for (const Primitive& shape : {heap, fan, book, point}) expect_sane(examine_mesh(as_mesh(shape), {}), 0);
+  for (const Primitive& shape : {heap, fan, book, point}) expect_sane(examine_mesh(lab::as_mesh(shape), {}), 0);
 }
 
 }  // namespace

@@ -12,11 +12,11 @@
 #include "builder/builder.h"
 #include "judge/validate/validate.h"
 #include "judge/verify/verify.h"
+#include "lab/samples/samples.h"
 #include "run/read/asset.h"
 #include "scene/repair/halfedge_oracle.h"
 #include "scene/repair/repair.h"
 #include "scene/repair/soups.h"
-#include "scene/samples/samples.h"
 
 namespace meshlode::scene {
 namespace {
@@ -124,7 +124,7 @@ TEST(RepairedSoups, AreBuiltAndVerified) {
 }
 
 TEST(RepairedSoups, ASurfaceWithoutFaultsHasTheSameContent) {
-  const Scene scene = as_scene(as_mesh(make_torus(40, 24)));
+  const Scene scene = lab::as_scene(lab::as_mesh(lab::make_torus(40, 24)));
   Scene same = scene;
   repair_scene(same);
   EXPECT_EQ(same.meshes[0].repairs.turned + same.meshes[0].repairs.split + same.meshes[0].drops.repaired, 0U);

@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "scene/samples/samples.h"
+#include "lab/samples/samples.h"
 #include "support/random.h"
 
 namespace meshlode::test {
@@ -25,7 +25,7 @@ void add_anything(scene::Primitive& soup, RandomSource& random) {
 
 /// A torus, some of whose triangles are gone, turned, there twice, or moved to another vertex.
 void add_spoilt_torus(scene::Primitive& soup, RandomSource& random) {
-  const scene::Primitive torus = scene::make_torus(5 + random.below(12), 4 + random.below(8));
+  const scene::Primitive torus = lab::make_torus(5 + random.below(12), 4 + random.below(8));
   const auto first = static_cast<std::uint32_t>(soup.positions.size());
   const auto count = static_cast<std::uint32_t>(torus.positions.size());
   soup.positions.insert(soup.positions.end(), torus.positions.begin(), torus.positions.end());
@@ -51,7 +51,7 @@ scene::Scene make_random_soup(std::uint64_t seed) {
   if (kind != 0) add_anything(soup, random);
   if (kind != 1) add_spoilt_torus(soup, random);
   soup.material = MaterialId(0U);
-  return scene::as_scene(scene::as_mesh(std::move(soup)));
+  return lab::as_scene(lab::as_mesh(std::move(soup)));
 }
 
 }  // namespace meshlode::test

@@ -10,7 +10,7 @@
 
 #include "scene/scene.h"
 
-namespace meshlode::scene {
+namespace meshlode::lab {
 
 struct GlbMaterial {
   std::string name;
@@ -29,7 +29,7 @@ struct GlbImage {
 /// Primitive::material indexes GlbScene::materials.
 struct GlbMesh {
   std::string name;
-  std::vector<Primitive> primitives;
+  std::vector<scene::Primitive> primitives;
   /// Writes positions as 16-bit integers, normals as 8-bit and UVs as 16-bit (KHR_mesh_quantization). Nodes then draw
   /// it through a child that scales it back. UVs must be in [0, 1].
   bool quantize = false;
@@ -73,4 +73,4 @@ struct GlbScene {
 
 [[nodiscard]] std::vector<std::uint8_t> write_glb(const GlbScene& scene);
 
-}  // namespace meshlode::scene
+}  // namespace meshlode::lab

@@ -6,12 +6,14 @@
 #include <tuple>
 
 #include "base/random.h"
-#include "scene/samples/cube_grid.h"
-#include "scene/samples/facets.h"
-#include "scene/samples/noise.h"
-#include "scene/samples/samples.h"
+#include "lab/samples/cube_grid.h"
+#include "lab/samples/facets.h"
+#include "lab/samples/noise.h"
+#include "lab/samples/samples.h"
 
-namespace meshlode::scene {
+namespace meshlode::lab {
+
+using namespace scene;
 
 namespace {
 
@@ -163,4 +165,4 @@ Primitive make_foliage(std::uint32_t count, std::uint64_t seed) {
   return out;
 }
 
-}  // namespace meshlode::scene
+}  // namespace meshlode::lab

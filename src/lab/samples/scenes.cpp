@@ -4,12 +4,14 @@
 #include <cassert>
 #include <cmath>
 
-#include "scene/samples/city.h"
-#include "scene/samples/samples.h"
-#include "scene/samples/write_glb.h"
-#include "scene/samples/write_png.h"
+#include "lab/samples/city.h"
+#include "lab/samples/samples.h"
+#include "lab/samples/write_glb.h"
+#include "lab/samples/write_png.h"
 
-namespace meshlode::scene {
+namespace meshlode::lab {
+
+using namespace scene;
 
 namespace {
 
@@ -135,4 +137,4 @@ SampleFile make_terrain_file(std::uint64_t triangles) {
   return {"terrain-" + std::to_string(triangles) + ".glb", write_glb(make_terrain_scene(cells, cells))};
 }
 
-}  // namespace meshlode::scene
+}  // namespace meshlode::lab

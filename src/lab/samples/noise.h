@@ -6,7 +6,7 @@
 
 #include "base/vec.h"
 
-namespace meshlode::scene {
+namespace meshlode::lab {
 
 /// Sine and cosine of an angle in whole turns (1 = 360 degrees): Taylor series on an eighth of a turn, error below
 /// 1e-15. Quarter turns are exact.
@@ -17,4 +17,4 @@ namespace meshlode::scene {
 [[nodiscard]] double value_noise(const Vec3d& p, std::uint64_t seed);
 [[nodiscard]] double fractal_noise(const Vec3d& p, std::uint32_t octaves, std::uint64_t seed);
 
-}  // namespace meshlode::scene
+}  // namespace meshlode::lab

@@ -2,10 +2,10 @@
 // The small city of data/: meshes of two materials each, drawn many times under all kinds of transforms.
 #pragma once
 
-#include "scene/samples/write_glb.h"
+#include "lab/samples/write_glb.h"
 
-namespace meshlode::scene {
+namespace meshlode::lab {
 
 [[nodiscard]] GlbScene make_city(std::uint64_t seed = 17);
 
-}  // namespace meshlode::scene
+}  // namespace meshlode::lab

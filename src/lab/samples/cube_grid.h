@@ -8,7 +8,7 @@
 
 #include "base/vec.h"
 
-namespace meshlode::scene {
+namespace meshlode::lab {
 
 /// Corners of a cell in counter-clockwise order.
 constexpr std::uint32_t kCellCorner[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
@@ -40,4 +40,4 @@ inline void add_quad(std::vector<std::uint32_t>& indices, std::uint32_t a, std::
   indices.insert(indices.end(), {a, b, c, a, c, d});
 }
 
-}  // namespace meshlode::scene
+}  // namespace meshlode::lab

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // stb_image_write, seen by this file alone in this room. Its compressor works on integers: the bytes are the same
 // everywhere.
-#include "scene/samples/write_png.h"
+#include "lab/samples/write_png.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,9 +12,9 @@
 #define STBI_WRITE_NO_STDIO
 #include <stb_image_write.h>
 
-#include "scene/samples/noise.h"
+#include "lab/samples/noise.h"
 
-namespace meshlode::scene {
+namespace meshlode::lab {
 
 namespace {
 
@@ -84,4 +84,4 @@ std::vector<std::uint8_t> encode_png(const Texture& texture) {
   return out;
 }
 
-}  // namespace meshlode::scene
+}  // namespace meshlode::lab

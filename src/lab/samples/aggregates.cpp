@@ -3,11 +3,13 @@
 #include <cmath>
 
 #include "base/random.h"
-#include "scene/samples/facets.h"
-#include "scene/samples/noise.h"
-#include "scene/samples/samples.h"
+#include "lab/samples/facets.h"
+#include "lab/samples/noise.h"
+#include "lab/samples/samples.h"
 
-namespace meshlode::scene {
+namespace meshlode::lab {
+
+using namespace scene;
 
 namespace {
 
@@ -118,4 +120,4 @@ Primitive make_aggregate_kind(const std::string& kind, std::uint32_t count, std:
   return out;
 }
 
-}  // namespace meshlode::scene
+}  // namespace meshlode::lab

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "scene/samples/city.h"
+#include "lab/samples/city.h"
 
 #include "base/random.h"
-#include "scene/samples/facets.h"
-#include "scene/samples/noise.h"
+#include "lab/samples/facets.h"
+#include "lab/samples/noise.h"
 
-namespace meshlode::scene {
+namespace meshlode::lab {
+
+using namespace scene;
 
 namespace {
 
@@ -266,4 +268,4 @@ GlbScene make_city(std::uint64_t seed) {
   return std::move(city.scene);
 }
 
-}  // namespace meshlode::scene
+}  // namespace meshlode::lab

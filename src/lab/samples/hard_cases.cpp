@@ -4,11 +4,13 @@
 #include <cmath>
 
 #include "base/random.h"
-#include "scene/samples/cube_grid.h"
-#include "scene/samples/noise.h"
-#include "scene/samples/samples.h"
+#include "lab/samples/cube_grid.h"
+#include "lab/samples/noise.h"
+#include "lab/samples/samples.h"
 
-namespace meshlode::scene {
+namespace meshlode::lab {
+
+using namespace scene;
 
 namespace {
 
@@ -208,4 +210,4 @@ Primitive make_far_plane(std::uint32_t n) {
   return out;
 }
 
-}  // namespace meshlode::scene
+}  // namespace meshlode::lab

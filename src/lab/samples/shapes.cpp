@@ -5,11 +5,13 @@
 #include <map>
 #include <tuple>
 
-#include "scene/samples/cube_grid.h"
-#include "scene/samples/noise.h"
-#include "scene/samples/samples.h"
+#include "lab/samples/cube_grid.h"
+#include "lab/samples/noise.h"
+#include "lab/samples/samples.h"
 
-namespace meshlode::scene {
+namespace meshlode::lab {
+
+using namespace scene;
 
 namespace {
 
@@ -139,4 +141,4 @@ Scene as_scene(SourceMesh mesh) {
   return scene;
 }
 
-}  // namespace meshlode::scene
+}  // namespace meshlode::lab

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <cstdint>
 
-#include "scene/samples/cube_grid.h"
+#include "lab/samples/cube_grid.h"
 #include "scene/scene.h"
 
-namespace meshlode::scene {
+namespace meshlode::lab {
 
 [[nodiscard]] inline Vec3d unit(const Vec3d& v) {
   return v / std::sqrt(glm::dot(v, v));
@@ -16,7 +16,7 @@ namespace meshlode::scene {
 
 /// Adds flat facets that have vertices and a normal of their own.
 struct FacetBuilder {
-  Primitive& out;
+  scene::Primitive& out;
 
   /// A flat patch a b c d (counter-clockwise) of u × v cells.
   void quad(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3d& d, std::uint32_t u, std::uint32_t v) {
@@ -65,4 +65,4 @@ struct FacetBuilder {
   }
 };
 
-}  // namespace meshlode::scene
+}  // namespace meshlode::lab

@@ -7,11 +7,13 @@
 #include <vector>
 
 #include "base/random.h"
-#include "scene/samples/facets.h"
-#include "scene/samples/noise.h"
-#include "scene/samples/samples.h"
+#include "lab/samples/facets.h"
+#include "lab/samples/noise.h"
+#include "lab/samples/samples.h"
 
-namespace meshlode::scene {
+namespace meshlode::lab {
+
+using namespace scene;
 
 namespace {
 
@@ -117,4 +119,4 @@ Primitive make_tree_leaves(std::uint32_t count, std::uint64_t seed) {
   return out;
 }
 
-}  // namespace meshlode::scene
+}  // namespace meshlode::lab

@@ -7,10 +7,12 @@
 
 #include <gtest/gtest.h>
 
-#include "scene/samples/samples.h"
+#include "lab/samples/samples.h"
 
-namespace meshlode::scene {
+namespace meshlode::lab {
 namespace {
+
+using namespace scene;
 
 std::vector<std::uint8_t> read_all(const std::filesystem::path& path) {
   std::ifstream in(path, std::ios::binary);
@@ -49,4 +51,4 @@ TEST(Samples, TerrainFileHasAboutTheTrianglesAsked) {
 }
 
 }  // namespace
-}  // namespace meshlode::scene
+}  // namespace meshlode::lab

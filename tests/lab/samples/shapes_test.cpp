@@ -7,11 +7,13 @@
 
 #include <gtest/gtest.h>
 
-#include "scene/samples/noise.h"
-#include "scene/samples/samples.h"
+#include "lab/samples/noise.h"
+#include "lab/samples/samples.h"
 
-namespace meshlode::scene {
+namespace meshlode::lab {
 namespace {
+
+using namespace scene;
 
 using Key = std::tuple<double, double, double>;
 
@@ -224,4 +226,4 @@ TEST(Samples, TreeLeavesAreCardsAroundItsLimbs) {
 }
 
 }  // namespace
-}  // namespace meshlode::scene
+}  // namespace meshlode::lab

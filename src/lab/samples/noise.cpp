@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "scene/samples/noise.h"
+#include "lab/samples/noise.h"
 
 #include <cmath>
 
 #include "base/random.h"
 
-namespace meshlode::scene {
+namespace meshlode::lab {
 
 namespace {
 
@@ -81,4 +81,4 @@ double fractal_noise(const Vec3d& p, std::uint32_t octaves, std::uint64_t seed) 
   return sum;
 }
 
-}  // namespace meshlode::scene
+}  // namespace meshlode::lab

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "scene/samples/write_glb.h"
+#include "lab/samples/write_glb.h"
 
 #include <algorithm>
 #include <bit>
@@ -8,7 +8,9 @@
 
 #include "base/json_writer.h"
 
-namespace meshlode::scene {
+namespace meshlode::lab {
+
+using namespace scene;
 
 namespace {
 
@@ -498,4 +500,4 @@ std::vector<std::uint8_t> write_glb(const GlbScene& scene) {
   return join_chunks(json.text(), chunk);
 }
 
-}  // namespace meshlode::scene
+}  // namespace meshlode::lab

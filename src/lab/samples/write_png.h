@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace meshlode::scene {
+namespace meshlode::lab {
 
 struct Texture {
   std::uint32_t width = 0, height = 0;
@@ -23,4 +23,4 @@ struct Texture {
 
 [[nodiscard]] std::vector<std::uint8_t> encode_png(const Texture& texture);
 
-}  // namespace meshlode::scene
+}  // namespace meshlode::lab
