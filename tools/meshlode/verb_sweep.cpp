@@ -23,7 +23,8 @@
 #include "doctor_words.h"
 #include "lab/page/numbers.h"
 #include "lab/page/page.h"
-#include "lab/page/read_sweep.h"
+#include "lab/page/read_pictures.h"
+#include "lab/sweep/page_data.h"
 #include "lab/sweep/sweep.h"
 #include "options.h"
 #include "verb.h"
@@ -216,13 +217,11 @@ Status keep_result(const lab::SweepOptions& options, const lab::SweepResult& res
                                  {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
   };
   if (Status written = write("sweep.csv", lab::sweep_csv(result)); !written) return written;
-  const std::string json = lab::sweep_json(options, result);
-  if (Status written = write("sweep.json", json); !written) return written;
-  auto data = lab::page::read_sweep(json);
-  if (!data) return data.error();
-  if (Status read = lab::page::read_pictures(*data, options.report); !read) return read;
+  if (Status written = write("sweep.json", lab::sweep_json(options, result)); !written) return written;
+  lab::page::ReportData data = lab::page_data(options, result);
+  if (Status read = lab::page::read_pictures(data, options.report); !read) return read;
   OutputFiles files;
-  return lab::page::write_report(*data, options.report, files);
+  return lab::page::write_report(data, options.report, files);
 }
 
 int run_sweep(const Verb& verb, std::span<char* const> args) {

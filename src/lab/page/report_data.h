@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the report of a sweep shows: sweep.json (docs/schemas/sweep.schema.json) as plain values, and the pictures that
-// it names. Texts come from files and are nothing that may be trusted; numbers are finite.
+// What the report of a sweep shows: what sweep.json says (docs/schemas/sweep.schema.json) as plain values, and the
+// pictures that it names. Texts come from files and are nothing that may be trusted; numbers are finite.
 #pragma once
 
 #include <cstddef>

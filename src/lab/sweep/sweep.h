@@ -129,6 +129,8 @@ using KeepResult = std::function<Status(const SweepResult& result)>;
 [[nodiscard]] std::string sweep_json(const SweepOptions& options, const SweepResult& result);
 [[nodiscard]] std::string sweep_csv(const SweepResult& result);
 
+/// The first point before it that has the same asset content; empty: none.
+[[nodiscard]] std::string same_asset_as(const SweepResult& result, std::size_t at);
 /// The command lines that build a point's asset and draw it.
 [[nodiscard]] std::string build_command(const SweepOptions& options, const SweepResult& result, const Point& point);
 [[nodiscard]] std::string draw_command(const SweepOptions& options, const SweepResult& result, const Point& point);

@@ -222,18 +222,6 @@ void write_pictures(JsonWriter& w, const Measurement* drawn) {
   w.end_array();
 }
 
-/// The first point before it that has the same asset content; empty: none.
-std::string same_asset_as(const SweepResult& result, std::size_t at) {
-  const PointResult& one = result.points[at];
-  if (one.asset == nullptr) return {};
-  for (std::size_t i = 0; i < at; ++i) {
-    const PointResult& other = result.points[i];
-    if (!other.is_done || other.asset == nullptr) continue;
-    if (other.asset->asset.content_hash == one.asset->asset.content_hash) return other.id;
-  }
-  return {};
-}
-
 void write_point(JsonWriter& w, const SweepOptions& options, const SweepResult& result, std::size_t at) {
   const PointResult& one = result.points[at];
   const bool is_measured = one.error.empty() && one.asset != nullptr;
@@ -319,6 +307,17 @@ std::string joined(const std::vector<std::string>& words) {
 }
 
 }  // namespace
+
+std::string same_asset_as(const SweepResult& result, std::size_t at) {
+  const PointResult& one = result.points[at];
+  if (one.asset == nullptr) return {};
+  for (std::size_t i = 0; i < at; ++i) {
+    const PointResult& other = result.points[i];
+    if (!other.is_done || other.asset == nullptr) continue;
+    if (other.asset->asset.content_hash == one.asset->asset.content_hash) return other.id;
+  }
+  return {};
+}
 
 std::string shell_word(const std::string& word) {
   constexpr const char* kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./=,:+@%";

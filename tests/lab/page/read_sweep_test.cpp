@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "lab/page/page.h"
+#include "lab/page/read_pictures.h"
 #include "lab/page/sample_sweep.h"
 #include "support/sanitized.h"
 

@@ -7,6 +7,7 @@
 #include "base/file.h"
 #include "base/output_files.h"
 #include "lab/page/page.h"
+#include "lab/page/read_pictures.h"
 #include "lab/page/read_sweep.h"
 #include "lab/page/sample_sweep.h"
 

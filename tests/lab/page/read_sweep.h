@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// sweep.json and the pictures beside it, read from bytes that nobody vouches for.
+// sweep.json, read: what a page shows must be what the file says.
 #pragma once
 
-#include <filesystem>
 #include <string_view>
 
 #include <meshlode/result.h>
@@ -15,9 +14,5 @@ namespace meshlode::lab::page {
 /// the place for what is no JSON, no sweep of version 1, or of another type than the schema says; and for numbers
 /// beyond 1e300 in magnitude.
 [[nodiscard]] Result<ReportData> read_sweep(std::string_view json);
-
-/// Reads the pictures that the data names, each once. Errors: kInvalid for a path that leads out of `folder`, and for
-/// what is no PNG or larger than 64 MiB; kIo for what cannot be read.
-[[nodiscard]] Status read_pictures(ReportData& data, const std::filesystem::path& folder);
 
 }  // namespace meshlode::lab::page
