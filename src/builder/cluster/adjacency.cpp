@@ -7,7 +7,6 @@
 
 #include "base/local_ids.h"
 #include "builder/cluster/dense_limit.h"
-#include "builder/cluster/loose_pieces.h"
 
 namespace meshlode::builder {
 
@@ -55,37 +54,11 @@ constexpr std::uint32_t second_of(std::uint64_t pair) {
   return static_cast<std::uint32_t>(pair);
 }
 
-/// The rows of a graph while links come in any order. Nearly every triangle has three at most, which have their place.
-class Rows {
- public:
-  explicit Rows(std::size_t count) : degree_(count, 0), few_(count) {}
+}  // namespace
 
-  void link(std::uint32_t a, std::uint32_t b, std::int32_t weight) {
-    add(a, b, weight);
-    add(b, a, weight);
-  }
-  /// Each row sorted. Two triangles that share two edges become one neighbour of twice the weight: METIS wants no
-  /// repeated edges.
-  [[nodiscard]] Graph graph();
-
- private:
-  void add(std::uint32_t from, std::uint32_t to, std::int32_t weight) {
-    const std::uint64_t entry = pair_of(to, static_cast<std::uint32_t>(weight));
-    const std::uint32_t at = degree_[from]++;
-    if (at < kFew) {
-      few_[from][at] = entry;
-    } else {
-      more_.emplace_back(from, entry);
-    }
-  }
-
-  static constexpr std::uint32_t kFew = 3;
-  std::vector<std::uint32_t> degree_;
-  std::vector<std::array<std::uint64_t, kFew>> few_;           ///< neighbour and weight
-  std::vector<std::pair<std::uint32_t, std::uint64_t>> more_;  ///< triangle, and what its row has beyond those
-};
-
-Graph Rows::graph() {
+/// Each row sorted. Two triangles that share two edges become one neighbour of twice the weight: METIS wants no
+/// repeated edges.
+Graph TriangleLinks::rows() {
   std::sort(more_.begin(), more_.end());
   Graph graph;
   graph.row_start.reserve(degree_.size() + 1);
@@ -122,7 +95,7 @@ Graph Rows::graph() {
 
 /// Triangles that share an edge: those of one edge in a chain. A counting sort of edges by their smaller position, then
 /// a sort inside each (usually tiny) bucket.
-void link_along_edges(const std::vector<Corner3>& corners, std::uint32_t position_count, Rows& rows) {
+void TriangleLinks::link_along_edges(const std::vector<Corner3>& corners, std::uint32_t position_count) {
   const auto for_each_edge = [&](auto&& visit) {
     for (std::uint32_t t = 0; t < corners.size(); ++t) {
       const auto [a, b, c] = corners[t];
@@ -142,27 +115,65 @@ void link_along_edges(const std::vector<Corner3>& corners, std::uint32_t positio
     sort_few(first, last);
     for (const std::uint64_t* use = first; use != last && use + 1 != last; ++use) {
       if (first_of(use[0]) != first_of(use[1]) || second_of(use[0]) == second_of(use[1])) continue;
-      rows.link(second_of(use[0]), second_of(use[1]), kSharedEdgeWeight);
+      link(second_of(use[0]), second_of(use[1]), kSharedEdgeWeight);
     }
     first = last;
   }
 }
 
-}  // namespace
-
-Graph triangle_graph(std::span<const Corner3> corner_positions, std::span<const TriangleLink> links) {
+TriangleLinks::TriangleLinks(std::span<const Corner3> corner_positions) : TriangleLinks(corner_positions.size()) {
   std::vector<Corner3> corners;
   const std::uint32_t position_count = compact(corner_positions, corners);
-  Rows rows(corners.size());
-  link_along_edges(corners, position_count, rows);
-  for (const auto& [a, b] : links) rows.link(a, b, kSharedEdgeWeight);
-  Graph graph = rows.graph();
-  std::vector<std::uint32_t> piece;
-  if (find_pieces(graph, piece) <= 1) return graph;
-  for (std::uint32_t t = 0; t + 1 < corners.size(); ++t) {
-    if (piece[t] != piece[t + 1]) rows.link(t, t + 1, kNearbyWeight);
+  link_along_edges(corners, position_count);
+}
+
+std::uint32_t TriangleLinks::find_pieces(std::vector<std::uint32_t>& piece) {
+  piece.assign(degree_.size(), kNoId);
+  std::vector<std::uint32_t> name(degree_.size(), kNoId);  // by what stands for the piece
+  std::uint32_t count = 0;
+  for (std::uint32_t t = 0; t < piece.size(); ++t) {
+    std::uint32_t& own = name[pieces_.find(t)];
+    if (own == kNoId) own = count++;
+    piece[t] = own;
   }
-  return rows.graph();
+  return count;
+}
+
+void TriangleLinks::add(std::span<const TriangleLink> links) {
+  for (const auto& [a, b] : links) link(a, b, kSharedEdgeWeight);
+}
+
+TriangleLinks TriangleLinks::without(std::span<const std::uint32_t> hosts) const {
+  std::vector<std::uint32_t> place(hosts.size(), kNoId);
+  std::uint32_t count = 0;
+  for (std::size_t t = 0; t < hosts.size(); ++t) {
+    if (hosts[t] == kNoId) place[t] = count++;
+  }
+  TriangleLinks kept(count);
+  const auto keep = [&](std::uint32_t t, std::uint64_t entry) {
+    const std::uint32_t to = place[first_of(entry)];
+    if (place[t] == kNoId || to == kNoId) return;
+    kept.put(place[t], pair_of(to, second_of(entry)));
+    kept.pieces_.join(place[t], to);
+  };
+  for (std::uint32_t t = 0; t < hosts.size(); ++t) {
+    for (std::uint32_t i = 0; i < std::min(degree_[t], kFew); ++i) keep(t, few_[t][i]);
+  }
+  for (const auto& [t, entry] : more_) keep(t, entry);
+  return kept;
+}
+
+Graph TriangleLinks::graph() {
+  for (std::uint32_t t = 0; t + 1 < degree_.size(); ++t) {
+    if (pieces_.find(t) != pieces_.find(t + 1)) link(t, t + 1, kNearbyWeight);
+  }
+  return rows();
+}
+
+Graph triangle_graph(std::span<const Corner3> corner_positions, std::span<const TriangleLink> links) {
+  TriangleLinks all(corner_positions);
+  all.add(links);
+  return all.graph();
 }
 
 }  // namespace meshlode::builder

@@ -101,67 +101,52 @@ std::size_t parts_for_vertices(std::span<const WedgeTriangle> triangles, std::ui
 /// From so many pieces per part on, a chunk is a soup.
 constexpr std::size_t kPiecesPerPart = 4;
 
-using Corners = std::vector<std::array<std::uint32_t, 3>>;  ///< positions of triangles
-
 /// Of triangles, times three.
-std::vector<Vec3f> centers_of(const Corners& corners, std::span<const Vec3i> positions) {
+std::vector<Vec3f> centers_of(std::span<const WedgeTriangle> triangles, std::span<const std::uint32_t> wedge_position,
+                              std::span<const Vec3i> positions) {
   std::vector<Vec3f> centers;
-  centers.reserve(corners.size());
-  for (const auto& [a, b, c] : corners) centers.emplace_back(positions[a] + positions[b] + positions[c]);
+  centers.reserve(triangles.size());
+  const auto at = [&](std::uint32_t wedge) { return positions[wedge_position[wedge]]; };
+  for (const auto& [a, b, c] : triangles) centers.emplace_back(at(a) + at(b) + at(c));
   return centers;
-}
-
-Clustering partition_chunk(std::span<const WedgeTriangle> triangles, const Corners& corners,
-                           std::span<const Vec3i> positions, Graph graph, std::size_t parts, const ClusterCaps& caps) {
-  Clustering clustering;
-  clustering.count = static_cast<std::uint32_t>(std::min(parts, triangles.size()));
-  clustering.label = caps.merge_triangles
-                         ? partition_merged(graph, centers_of(corners, positions), clustering.count, caps.seed)
-                         : partition_graph(graph, clustering.count, caps.seed);
-  enforce_caps(triangles, graph, caps, clustering);
-  return clustering;
 }
 
 Clustering cluster_chunk(std::span<const WedgeTriangle> triangles, std::span<const std::uint32_t> wedge_position,
                          std::span<const Vec3i> positions, const ClusterCaps& caps) {
-  const auto corners_of = [&](std::span<const WedgeTriangle> some) {
-    Corners corners(some.size());
-    for (std::size_t t = 0; t < some.size(); ++t) {
-      for (std::size_t k = 0; k < 3; ++k) corners[t][k] = wedge_position[some[t][k]];
-    }
-    return corners;
-  };
-  const Corners corners = corners_of(triangles);
-  Graph graph = triangle_graph(corners);
+  std::vector<std::array<std::uint32_t, 3>> corners(triangles.size());
+  for (std::size_t t = 0; t < corners.size(); ++t) {
+    for (std::size_t k = 0; k < 3; ++k) corners[t][k] = wedge_position[triangles[t][k]];
+  }
+  TriangleLinks links(corners);
   const std::size_t for_triangles = (triangles.size() + caps.target_triangles - 1) / caps.target_triangles;
   const std::size_t parts = std::max(triangles.size() <= caps.max_triangles ? 1 : for_triangles,
                                      parts_for_vertices(triangles, caps.max_vertices));
+  const auto partition = [&](std::span<const WedgeTriangle> some, Graph graph) {
+    Clustering clustering;
+    clustering.count = static_cast<std::uint32_t>(std::min(parts, some.size()));
+    clustering.label = caps.merge_triangles ? partition_merged(graph, centers_of(some, wedge_position, positions),
+                                                               clustering.count, caps.seed)
+                                            : partition_graph(graph, clustering.count, caps.seed);
+    enforce_caps(some, graph, caps, clustering);
+    return clustering;
+  };
   std::vector<std::uint32_t> piece;
-  const std::uint32_t piece_count = find_pieces(graph, piece);
-  if (parts == 1 || piece_count == 1)
-    return partition_chunk(triangles, corners, positions, std::move(graph), parts, caps);
+  const std::uint32_t piece_count = links.find_pieces(piece);
+  if (parts == 1 || piece_count == 1) return partition(triangles, links.graph());
   if (piece_count > kPiecesPerPart * parts) {
     Clustering clustering =
         cluster_pieces(triangles, wedge_position, positions, piece, piece_count, std::min(parts, triangles.size()));
-    enforce_caps(triangles, graph, caps, clustering);
+    enforce_caps(triangles, links.graph(), caps, clustering);
     return clustering;
   }
-  const std::vector<TriangleLink> links = link_to_nearest(corners, positions, piece, piece_count);
-  const Hosts hosts = host_debris(piece, piece_count, links);
-  if (hosts.empty()) return partition_chunk(triangles, corners, positions, triangle_graph(corners, links), parts, caps);
+  const std::vector<TriangleLink> to_nearest = link_to_nearest(corners, positions, piece, piece_count);
+  links.add(to_nearest);
+  const Hosts hosts = host_debris(piece, piece_count, to_nearest);
+  if (hosts.empty()) return partition(triangles, links.graph());
   const auto cluster_core = [&](std::span<const WedgeTriangle> core, std::span<const std::int32_t> weights) {
-    std::vector<TriangleLink> core_links;
-    std::vector<std::uint32_t> place(triangles.size(), kNoId);
-    for (std::uint32_t t = 0, next = 0; t < hosts.size(); ++t) {
-      if (hosts[t] == kNoId) place[t] = next++;
-    }
-    for (const auto& [a, b] : links) {
-      if (place[a] != kNoId && place[b] != kNoId) core_links.emplace_back(place[a], place[b]);
-    }
-    const Corners core_corners = corners_of(core);
-    Graph weighted = triangle_graph(core_corners, core_links);
+    Graph weighted = links.without(hosts).graph();
     weighted.node_weight.assign(weights.begin(), weights.end());
-    return partition_chunk(core, core_corners, positions, std::move(weighted), parts, caps);
+    return partition(core, std::move(weighted));
   };
   return cluster_with_satellites(triangles, wedge_position, positions, hosts, caps, cluster_core);
 }

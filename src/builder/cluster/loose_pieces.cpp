@@ -10,29 +10,6 @@
 
 namespace meshlode::builder {
 
-std::uint32_t find_pieces(const Graph& graph, std::vector<std::uint32_t>& piece) {
-  piece.assign(graph.node_count(), kNoId);
-  std::uint32_t count = 0;
-  std::vector<std::uint32_t> stack;
-  for (std::uint32_t first = 0; first < piece.size(); ++first) {
-    if (piece[first] != kNoId) continue;
-    piece[first] = count;
-    stack.push_back(first);
-    while (!stack.empty()) {
-      const std::uint32_t t = stack.back();
-      stack.pop_back();
-      for (auto i = graph.row_start[t]; i < graph.row_start[t + 1]; ++i) {
-        const auto n = static_cast<std::uint32_t>(graph.neighbor[static_cast<std::size_t>(i)]);
-        if (graph.edge_weight[static_cast<std::size_t>(i)] < kSharedEdgeWeight || piece[n] != kNoId) continue;
-        piece[n] = count;
-        stack.push_back(n);
-      }
-    }
-    ++count;
-  }
-  return count;
-}
-
 namespace {
 
 /// A place that triangles of one piece have a corner at, and the first of them.

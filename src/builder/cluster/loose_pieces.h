@@ -9,13 +9,8 @@
 #include "base/vec.h"
 #include "builder/cluster/adjacency.h"
 #include "builder/cluster/cluster.h"
-#include "builder/cluster/partition.h"
 
 namespace meshlode::builder {
-
-/// The piece of each triangle: pieces are joined by shared edges, and numbered by their first triangle. Returns how
-/// many.
-[[nodiscard]] std::uint32_t find_pieces(const Graph& graph, std::vector<std::uint32_t>& piece);
 
 /// Pieces of so many triangles are debris where there are larger ones.
 constexpr std::uint32_t kDebris = 8;

@@ -58,11 +58,12 @@ MergedGraph merge_pairs(const Graph& graph) {
   coarse.row_start.reserve(first.size() + 1);
   coarse.row_start.push_back(0);
   coarse.node_weight.reserve(first.size());
-  coarse.neighbor.reserve(graph.neighbor.size());
-  coarse.edge_weight.reserve(graph.neighbor.size());
+  coarse.neighbor.resize(graph.neighbor.size());  // so many at most
+  coarse.edge_weight.resize(graph.neighbor.size());
+  std::int32_t end = 0;
   std::vector<std::int32_t> slot(first.size(), -1);  // of a neighbour in the row that is being written
   for (std::uint32_t m = 0; m < first.size(); ++m) {
-    const std::int32_t row = coarse.row_start.back();
+    const std::int32_t row = end;
     std::int32_t weight = 0;
     const auto add = [&](std::uint32_t node) {
       weight += graph.node_weight.empty() ? 1 : graph.node_weight[node];
@@ -71,18 +72,21 @@ MergedGraph merge_pairs(const Graph& graph) {
         const std::uint32_t other = merged.node[static_cast<std::size_t>(graph.neighbor[i])];
         if (other == m) continue;
         if (slot[other] < row) {
-          slot[other] = static_cast<std::int32_t>(coarse.neighbor.size());
-          coarse.neighbor.push_back(static_cast<std::int32_t>(other));
-          coarse.edge_weight.push_back(0);
+          slot[other] = end;
+          coarse.neighbor[static_cast<std::size_t>(end)] = static_cast<std::int32_t>(other);
+          coarse.edge_weight[static_cast<std::size_t>(end++)] = graph.edge_weight[i];
+        } else {
+          coarse.edge_weight[static_cast<std::size_t>(slot[other])] += graph.edge_weight[i];
         }
-        coarse.edge_weight[static_cast<std::size_t>(slot[other])] += graph.edge_weight[i];
       }
     };
     add(first[m]);
     if (mate[first[m]] != first[m]) add(mate[first[m]]);
     coarse.node_weight.push_back(weight);
-    coarse.row_start.push_back(static_cast<std::int32_t>(coarse.neighbor.size()));
+    coarse.row_start.push_back(end);
   }
+  coarse.neighbor.resize(static_cast<std::size_t>(end));
+  coarse.edge_weight.resize(static_cast<std::size_t>(end));
   return merged;
 }
 

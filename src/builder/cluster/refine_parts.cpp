@@ -97,10 +97,15 @@ void refine_parts(const Graph& graph, const PartWeights& weights, int passes, st
   std::vector<std::int64_t> size(parts, 0);
   for (std::uint32_t n = 0; n < count; ++n) size[labels[n]] += weight_of(n);
   EdgesByPart edges(parts);
+  std::vector<std::uint8_t> may_be_on_border(count, 1);  // most nodes are looked at once, inside a part
   for (int pass = 0; pass < passes; ++pass) {
     bool any_moved = false;
     for (std::uint32_t n = 0; n < count; ++n) {
-      if (!is_on_border(graph, labels, n)) continue;
+      if (may_be_on_border[n] == 0) continue;
+      if (!is_on_border(graph, labels, n)) {
+        may_be_on_border[n] = 0;
+        continue;
+      }
       const std::uint32_t own = labels[n];
       const std::int64_t weight = weight_of(n);
       if (size[own] - weight < weights.least) continue;
@@ -120,6 +125,10 @@ void refine_parts(const Graph& graph, const PartWeights& weights, int passes, st
       size[best] += weight;
       labels[n] = best;
       any_moved = true;
+      for (auto i = static_cast<std::size_t>(graph.row_start[n]); i < static_cast<std::size_t>(graph.row_start[n + 1]);
+           ++i) {
+        may_be_on_border[static_cast<std::size_t>(graph.neighbor[i])] = 1;
+      }
     }
     if (!any_moved) return;
   }

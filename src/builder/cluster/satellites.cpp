@@ -124,12 +124,11 @@ std::pair<Systems, Systems> divide(const Systems& systems, const Surface& surfac
   corners.reserve(systems.size());
   for (const auto& system : systems)
     corners.push_back(positions_of(surface.triangles[system[0]], surface.wedge_position));
-  Graph graph = triangle_graph(corners);
+  TriangleLinks links(corners);
   std::vector<std::uint32_t> piece;
-  const std::uint32_t piece_count = find_pieces(graph, piece);
-  if (piece_count > 1) {
-    graph = triangle_graph(corners, link_to_nearest(corners, surface.positions, piece, piece_count));
-  }
+  const std::uint32_t piece_count = links.find_pieces(piece);
+  if (piece_count > 1) links.add(link_to_nearest(corners, surface.positions, piece, piece_count));
+  Graph graph = links.graph();
   for (const auto& system : systems) graph.node_weight.push_back(static_cast<std::int32_t>(system.size()));
   const std::vector<std::uint32_t> half = partition_graph(graph, 2);
   for (std::size_t i = 0; i < systems.size(); ++i) (half[i] == 0 ? halves.first : halves.second).push_back(systems[i]);

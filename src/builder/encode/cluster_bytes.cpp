@@ -78,6 +78,31 @@ std::vector<std::uint32_t> find_islands(std::span<const LocalTriangle> triangles
   return root;
 }
 
+/// Coordinates of a cluster's points, axis by axis: loops over them have no branch and become vector instructions.
+using Columns = std::array<std::array<std::int32_t, format::kMaxClusterVertices>, 3>;
+
+/// Of chart_coordinates, over all points.
+std::array<ValueRange, 2> chart_ranges(const Columns& points, std::size_t count, std::uint32_t chart,
+                                       std::int32_t scale) {
+  const std::size_t pole = chart / 2;
+  const std::int32_t *as = points[(pole + 1) % 3].data(), *bs = points[(pole + 2) % 3].data();
+  const std::int32_t* cs = points[pole].data();
+  const std::int32_t side = chart % 2 == 0 ? 0 : -1;  // c ^ side is negative where the point is on the far half
+  std::int32_t least_a = 2 * scale, most_a = 0, least_b = 2 * scale, most_b = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::int32_t a = as[i], b = bs[i], c = cs[i];
+    const std::int32_t fa = scale - std::abs(b), fb = scale - std::abs(a);
+    const bool is_far = ((c ^ side) < 0) & (c != 0);
+    const std::int32_t x = (is_far ? (a < 0 ? -fa : fa) : a) + scale;
+    const std::int32_t y = (is_far ? (b < 0 ? -fb : fb) : b) + scale;
+    least_a = std::min(least_a, x);
+    most_a = std::max(most_a, x);
+    least_b = std::min(least_b, y);
+    most_b = std::max(most_b, y);
+  }
+  return {range_between(least_a, most_a), range_between(least_b, most_b)};
+}
+
 /// One cluster on its way into words. Vertices are in their new order: by first use of the strips.
 class ClusterEncoder {
  public:
@@ -155,20 +180,24 @@ class ClusterEncoder {
     const auto first = dag_.triangles.begin() + cluster_.first_triangle;
     std::vector<LocalTriangle> triangles(first, first + cluster_.triangle_count);
     const std::vector<std::uint32_t> island = find_islands(triangles, cluster_.vertex_count);
-    std::vector<std::uint32_t> order(triangles.size());
-    std::iota(order.begin(), order.end(), 0U);
-    const auto key = [&](std::uint32_t t) {
-      return std::pair(dag_.triangle_material[cluster_.first_triangle + t], island[triangles[t][0]]);
-    };
-    std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
+    // Material, island and place as one number each. They are in order already where there is one of either, as nearly
+    // always.
+    std::vector<std::uint64_t> order(triangles.size());
+    for (std::size_t t = 0; t < order.size(); ++t) {
+      order[t] =
+          std::uint64_t{dag_.triangle_material[cluster_.first_triangle + t]} << 16U | island[triangles[t][0]] << 8U | t;
+    }
+    if (!std::is_sorted(order.begin(), order.end())) std::sort(order.begin(), order.end());
     std::vector<LocalTriangle> sorted;
     std::vector<std::uint32_t> block;
+    sorted.reserve(order.size());
+    block.reserve(order.size());
     for (std::size_t i = 0; i < order.size(); ++i) {
-      const bool is_new = i > 0 && key(order[i]) != key(order[i - 1]);
+      const bool is_new = i > 0 && order[i] >> 8U != order[i - 1] >> 8U;
       block.push_back(i == 0 ? 0U : block.back() + (is_new ? 1U : 0U));
-      sorted.push_back(triangles[order[i]]);
+      sorted.push_back(triangles[order[i] & 0xFFU]);
     }
-    const bool is_mixed = key(order.front()).first != key(order.back()).first;
+    const bool is_mixed = order.front() >> 16U != order.back() >> 16U;
     strips_ =
         make_strips(sorted, block, cluster_.vertex_count, {is_mixed ? plan_.mixed_strip_trials : plan_.strip_trials});
     island_.reserve(cluster_.vertex_count);
@@ -193,22 +222,16 @@ class ClusterEncoder {
   void choose_chart() {
     std::vector<std::array<std::int32_t, 3>> points;
     points.reserve(cluster_.vertex_count);
+    Columns columns;
     for (std::size_t i = 0; i < cluster_.vertex_count; ++i) {
       const float* n = attributes(i);
       points.push_back(nearest_octahedral_point({n[0], n[1], n[2]}, plan_.normal_scale));
+      for (std::size_t axis = 0; axis < 3; ++axis) columns[axis][i] = points[i][axis];
     }
     std::uint32_t best_bits = 64;
     std::uint32_t best_chart = 0;
     for (std::uint32_t chart = 0; chart < 6; ++chart) {
-      std::array<std::int32_t, 2> least = chart_coordinates(points[0], chart, plan_.normal_scale), most = least;
-      for (const auto& point : points) {
-        const std::array<std::int32_t, 2> at = chart_coordinates(point, chart, plan_.normal_scale);
-        for (std::size_t i = 0; i < 2; ++i) {
-          least[i] = std::min(least[i], at[i]);
-          most[i] = std::max(most[i], at[i]);
-        }
-      }
-      const std::array<ValueRange, 2> range{range_between(least[0], most[0]), range_between(least[1], most[1])};
+      const std::array<ValueRange, 2> range = chart_ranges(columns, points.size(), chart, plan_.normal_scale);
       if (range[0].bits + range[1].bits >= best_bits) continue;
       best_bits = range[0].bits + range[1].bits;
       best_chart = chart;

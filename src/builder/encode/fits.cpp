@@ -62,6 +62,23 @@ std::int32_t wrap(std::uint32_t value) {
   return static_cast<std::int32_t>(value);
 }
 
+/// A value less the fit of the two others.
+std::int32_t sheared(std::int32_t value, std::int32_t u, std::int32_t v, const std::array<std::int32_t, 2>& slope) {
+  return value - ((slope[0] * u + slope[1] * v) >> format::kShearShift);
+}
+
+/// Of a whole axis.
+ValueRange sheared_range(const std::vector<std::int32_t>& values, const std::vector<std::int32_t>& u,
+                         const std::vector<std::int32_t>& v, const std::array<std::int32_t, 2>& slope) {
+  std::int32_t least = sheared(values[0], u[0], v[0], slope), most = least;
+  for (std::size_t i = 1; i < values.size(); ++i) {
+    const std::int32_t residual = sheared(values[i], u[i], v[i], slope);
+    least = std::min(least, residual);
+    most = std::max(most, residual);
+  }
+  return range_between(least, most);
+}
+
 }  // namespace
 
 ValueRange range_between(std::int32_t least, std::int32_t most) {
@@ -94,8 +111,16 @@ PositionFit fit_positions(std::span<const std::array<std::int32_t, 3>> positions
   }
   const std::vector<RawPosition> plain = best.raw;
   const std::array<ValueRange, 3> plain_range = best.range;
+  const auto bits_of = [](const std::array<ValueRange, 3>& range) {
+    return range[0].bits + range[1].bits + range[2].bits;
+  };
 
-  std::vector<std::int32_t> residual(positions.size());
+  // What the trials look at, axis by axis, and without a branch: such loops become vector instructions.
+  std::array<std::vector<std::int32_t>, 3> offset;  // above the axis's minimum
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    offset[axis].reserve(positions.size());
+    for (const RawPosition& p : plain) offset[axis].push_back(static_cast<std::int32_t>(p[axis]));
+  }
   for (std::uint32_t axis = 0; axis < 3; ++axis) {
     const std::size_t u = axis == 0 ? 1 : 0;
     const std::size_t v = axis == 2 ? 1 : 2;
@@ -109,33 +134,24 @@ PositionFit fit_positions(std::span<const std::array<std::int32_t, 3>> positions
     };
     const std::int32_t su = scaled(slope[u]);
     const std::int32_t sv = scaled(slope[v]);
-    for (std::int32_t du = -1; du <= 1; ++du) {
-      for (std::int32_t dv = -1; dv <= 1; ++dv) {
-        const std::array<std::int32_t, 2> trial{std::clamp(su + du, -kMaxShear, kMaxShear),
-                                                std::clamp(sv + dv, -kMaxShear, kMaxShear)};
-        for (std::size_t i = 0; i < positions.size(); ++i) {
-          const std::int32_t fit =
-              (trial[0] * static_cast<std::int32_t>(plain[i][u]) + trial[1] * static_cast<std::int32_t>(plain[i][v])) >>
-              format::kShearShift;
-          residual[i] = positions[i][axis] - fit;
-        }
-        const ValueRange range = range_of(residual);
+    for (std::int32_t tu = std::max(su - 1, -kMaxShear); tu <= std::min(su + 1, kMaxShear); ++tu) {
+      for (std::int32_t tv = std::max(sv - 1, -kMaxShear); tv <= std::min(sv + 1, kMaxShear); ++tv) {
+        std::array<ValueRange, 3> range = plain_range;
+        range[axis] = sheared_range(axis_values[axis], offset[u], offset[v], {tu, tv});
         constexpr std::int32_t kMinimumLimit = (1 << 23) - 1;
-        if (std::abs(range.minimum) > kMinimumLimit) continue;
-        if (range.bits + plain_range[u].bits + plain_range[v].bits >=
-            best.range[0].bits + best.range[1].bits + best.range[2].bits) {
-          continue;
-        }
+        if (std::abs(range[axis].minimum) > kMinimumLimit || bits_of(range) >= bits_of(best.range)) continue;
         best.axis = axis;
-        best.slope = trial;
-        best.range = plain_range;
-        best.range[axis] = range;
-        best.raw = plain;
-        for (std::size_t i = 0; i < positions.size(); ++i) {
-          best.raw[i][axis] = static_cast<std::uint32_t>(residual[i] - range.minimum);
-        }
+        best.slope = {tu, tv};
+        best.range = range;
       }
     }
+  }
+  if (best.slope[0] == 0 && best.slope[1] == 0) return best;
+  const std::size_t u = best.axis == 0 ? 1 : 0;
+  const std::size_t v = best.axis == 2 ? 1 : 2;
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    best.raw[i][best.axis] = static_cast<std::uint32_t>(
+        sheared(axis_values[best.axis][i], offset[u][i], offset[v][i], best.slope) - best.range[best.axis].minimum);
   }
   return best;
 }
