@@ -36,5 +36,9 @@ fi
 if nm -D --defined-only "$c_library" | grep -v ' [AT] meshlode_'; then
   echo "FAILED: meshlode::c shows the symbols above"; exit 1
 fi
+# What only studies want is in no library (src/lab).
+if needed "$(find "$work/prefix" -name 'libmeshlode_build.so')" | grep OpenMesh; then
+  echo "FAILED: meshlode::build needs the library above"; exit 1
+fi
 echo "meshlode::c needs $(needed "$c_library" | tr '\n' ' ')"
 echo "PASSED: use_runtime needs $(needed "$work/consumer/use_runtime" | tr '\n' ' ')"
