@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "base/random.h"
 #include "builder/cluster/adjacency.h"
 #include "builder/cluster/satellites.h"
 #include "builder/prepare/prepare.h"
@@ -169,6 +170,33 @@ TEST(TriangleGraph, AnEdgeOfManyTrianglesStaysLinear) {
   for (std::uint32_t i = 0; i < 5000; ++i) fan.push_back({0, 1, i + 2});
   const Graph graph = triangle_graph(fan);
   EXPECT_EQ(graph.neighbor.size(), 2U * 4999U);
+}
+
+/// Whole pieces are taken out: what is left is the graph of the others.
+TEST(TriangleGraph, WithoutSomePiecesIsTheGraphOfTheRest) {
+  SplitMix64 random(5);
+  for (int round = 0; round < 100; ++round) {
+    SCOPED_TRACE(round);
+    std::vector<std::array<std::uint32_t, 3>> triangles(1 + random.scaled_below(60));
+    for (auto& triangle : triangles) {
+      for (std::uint32_t& corner : triangle) corner = random.scaled_below(40);
+    }
+    TriangleLinks links(triangles);
+    std::vector<std::uint32_t> piece;
+    const std::uint32_t pieces = links.find_pieces(piece);
+    EXPECT_EQ(piece[0], 0U);
+    EXPECT_EQ(*std::max_element(piece.begin(), piece.end()), pieces - 1);
+    std::vector<std::uint32_t> hosts(triangles.size(), kNoId);
+    std::vector<std::array<std::uint32_t, 3>> rest;
+    for (std::size_t t = 0; t < triangles.size(); ++t) {
+      if (piece[t] % 3 == 1) hosts[t] = 0;
+      if (hosts[t] == kNoId) rest.push_back(triangles[t]);
+    }
+    const Graph kept = links.without(hosts).graph(), made = triangle_graph(rest);
+    EXPECT_EQ(kept.row_start, made.row_start);
+    EXPECT_EQ(kept.neighbor, made.neighbor);
+    EXPECT_EQ(kept.edge_weight, made.edge_weight);
+  }
 }
 
 TEST(TriangleGraph, IsSymmetricWithoutLoopsOrRepeats) {
