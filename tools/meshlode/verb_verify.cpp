@@ -68,7 +68,8 @@ void write_brackets(JsonWriter& json, std::span<const judge::CutBracket> bracket
     json.field("stored", cut.stored);
     json.field("lower", cut.lower);
     json.field("upper", cut.upper);
-    json.field("undecided", cut.undecided);
+    json.field("verdict", cut.is_above(1.0) ? "above" : cut.is_undecided() ? "undecided" : "within");
+    json.field("undecided_pieces", cut.undecided);
     json.end_object();
   }
   json.end_array();

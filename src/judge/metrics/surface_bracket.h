@@ -24,6 +24,7 @@ struct NearParts {
   std::array<std::uint32_t, kMost> parts{};
   std::uint8_t count = 0;  ///< 0: not proven, or by more parts
 
+  [[nodiscard]] bool is_proven() const { return count > 0 && count <= kMost; }
   void add(std::uint32_t part);
   void give_up() { count = kMost + 1; }
 };

@@ -120,9 +120,8 @@ class Brackets {
     std::vector<std::uint8_t> is_listed(near_.size(), 0);  // some are in several leaves
     for (const std::uint32_t t : tree_.triangles_in_order()) {
       const NearParts& near = near_[t];
-      const bool is_proven = near.count > 0 && near.count <= NearParts::kMost &&
-                             std::all_of(near.parts.begin(), near.parts.begin() + near.count,
-                                         [&](std::uint32_t part) { return is_drawn[part] != 0; });
+      const bool is_proven = near.is_proven() && std::all_of(near.parts.begin(), near.parts.begin() + near.count,
+                                                             [&](std::uint32_t part) { return is_drawn[part] != 0; });
       if (!is_proven && is_listed[t] == 0) triangles.push_back(t);
       is_listed[t] = 1;
     }
@@ -147,7 +146,7 @@ class Brackets {
     Bracket bracket = bracket_one_way(surface, triangles, {truth_, tree_}, options);
     if (bracket.upper <= options.enough) return bracket;  // all that were open for a while, too
     for (std::size_t i = 0; i < triangles.size(); ++i) {
-      if (bracket.near[i].count != 1) is_near_[cluster_of[i]] = 0;
+      if (!bracket.near[i].is_proven()) is_near_[cluster_of[i]] = 0;
     }
     return bracket;
   }
