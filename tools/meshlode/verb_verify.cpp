@@ -275,7 +275,10 @@ int run_verify(const Verb& verb, std::span<char* const> args) {
   if (!source) return print_error(source.error());
   const Result<MappedFile> file = MappedFile::open(source_path);
   if (file) options.source_bytes = file->bytes();
-  if (options.is_quick) options.uniform_cuts = options.cameras = 0;  // as it is reported
+  if (options.is_quick) {  // as it is reported
+    options.uniform_cuts = options.cameras = 0;
+    options.deviation_budget = std::min(options.deviation_budget, judge::kQuickDeviationBudget);
+  }
   auto other = is_forced ? std::nullopt : find_other_source(*asset, *source);
   judge::VerifyReport report = other ? std::move(*other) : judge::verify_asset(*asset, *source, options);
   if (gpu_options.is_on && !other) {

@@ -15,11 +15,12 @@ namespace {
 
 constexpr std::uint32_t kNone = NearestPoint::kNone;
 constexpr std::size_t kChunk = 256;
-constexpr std::uint64_t kSplitsAtOnce = 1024;  // of a piece, before the others' turn
-constexpr std::size_t kPiecesAtOnce = 1024;    // of those that are open the farthest, or a quarter
+constexpr std::size_t kPiecesAtOnce = 1024;  // of those that are open the farthest, or a quarter
 
 // Where its sharpest corner has a greater sine a triangle's normal is known to 1e-12.
 constexpr double kPlaneSine = 1e-4;
+// Of regula falsi. Most places are found in two; where a surface is flat to the last digits it is all the way to them.
+constexpr int kMostSteps = 40;
 constexpr std::size_t kMostCandidates = 8;  // triangles that a piece may be near to
 
 /// A part of a triangle.
@@ -176,10 +177,13 @@ class Search {
     return place;
   }
 
-  /// The nearest triangle of a point becomes a candidate.
+  /// A triangle that is near enough to a point becomes a candidate, or where there is none the nearest.
   std::uint8_t ask(Piece& piece, const Vec3d& p, std::uint32_t hint, Found& found) const {
-    const NearestPoint nearest = tree_.nearest(p, hint);
-    found.meet(std::sqrt(nearest.distance2), p);
+    NearestPoint nearest = tree_.any_within(known2_, p, hint);
+    if (nearest.triangle == kNone) {
+      nearest = tree_.nearest(p, hint);
+      found.meet(std::sqrt(nearest.distance2), p);
+    }
     add(piece, nearest.triangle);
     return near_of(piece, p);
   }
@@ -217,12 +221,13 @@ class Search {
     const auto difference = [&](const Vec3d& at) {
       return std::sqrt(distance2(at, of_p)) - std::sqrt(distance2(at, of_q));
     };
-    double low = 0.0, high = 1.0, at_low = difference(p), at_high = difference(q);
+    // Each end is next to its own triangle.
+    double low = 0.0, high = 1.0, at_low = -std::sqrt(distance2(p, of_q)), at_high = std::sqrt(distance2(q, of_p));
     bool is_asked = false;
     int side = 0;
     std::uint8_t near = 0;
-    for (int step = 0; step < 12; ++step) {
-      double s = at_high > at_low ? low - at_low * (high - low) / (at_high - at_low) : 0.5 * (low + high);
+    for (int step = 0; step < kMostSteps; ++step) {
+      double s = at_low < 0.0 && at_high > 0.0 ? low - at_low * (high - low) / (at_high - at_low) : 0.5 * (low + high);
       s = std::clamp(s, low + 0.02 * (high - low), high - 0.02 * (high - low));
       x = p + (q - p) * s;
       near = near_of(piece, x);
@@ -238,8 +243,9 @@ class Search {
         if ((near & piece.near[edge]) != 0 && (near & piece.near[(edge + 1) % 3]) != 0) return near;
       }
       const double f = difference(x);
-      if (std::abs(f) < 1e-4 * known_ || high - low < 1e-4) break;
-      if (f < 0.0) {
+      if (std::abs(f) < 1e-4 * known_ || high - low < 1e-14) break;
+      // What is near says more than which of the two is nearer.
+      if ((near & of_low) != 0 || ((near & of_high) == 0 && f < 0.0)) {
         low = s;
         at_low = f;
         if (side == 1) at_high *= 0.5;
@@ -251,12 +257,14 @@ class Search {
         side = 2;
       }
     }
-    return near != 0 ? near : ask(piece, x, of_p, found);
+    if (near != 0) x = 0.5 * p + 0.5 * q;  // there is no such place
+    return ask(piece, x, of_p, found);
   }
 
+  /// Each edge is near to one triangle, and the whole to none. Seldom.
   void split_inside(Piece& piece, Found& found) {
     const auto& [p, q, r] = piece.at;
-    Vec3d x = (p + q + r) / 3.0;
+    const Vec3d x = (p + q + r) / 3.0;
     std::uint8_t near = near_of(piece, x);
     if (near == 0) near = ask(piece, x, piece.candidates[0], found);
     for (std::size_t c = 0; c < 3; ++c) put(piece, c, x, near);
@@ -310,13 +318,19 @@ Bracket bracket_one_way(const Surface& a, std::span<const std::uint32_t> triangl
   Bracket out;
   Found found;
   const std::vector<std::uint32_t> near = find_nearest(a, triangles, b.tree, found);
+  if (triangles.empty()) {
+    out.upper = options.enough;
+    return out;
+  }
   const auto look = [&](std::size_t count, double enough, auto&& piece_at) {
     std::vector<Found> parts(chunk_count(count, kChunk));
     std::vector<NearParts> near_parts(count);
+    // Each has its share of what is left of the budget.
+    const std::uint64_t most = options.budget > found.splits ? 1 + (options.budget - found.splits) / count : 0;
     parallel_for_each_chunk(count, kChunk, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
       Search search(b, enough);
       for (std::size_t i = begin; i < end; ++i) {
-        near_parts[i] = search.look_at(piece_at(i, search), kSplitsAtOnce, parts[chunk]);
+        near_parts[i] = search.look_at(piece_at(i, search), most, parts[chunk]);
       }
     });
     std::vector<Piece> open;

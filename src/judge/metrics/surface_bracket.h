@@ -14,7 +14,7 @@ namespace meshlode::judge {
 
 struct BracketOptions {
   double enough = 0.0;       ///< a piece proven to be no farther than this is done with
-  double tolerance = 0.005;  ///< beyond that: the search is over where `upper` is within this share of `lower`
+  double tolerance = 0.002;  ///< beyond that: the search is over where `upper` is within this share of `lower`
   std::uint64_t budget = 0;  ///< splits of pieces, in all, after which those that are open are undecided
 };
 

@@ -83,7 +83,7 @@ class Brackets {
     }
     BracketOptions options;
     options.enough = cut.stored * (1.0 + kNothing) + cut.rounding;
-    options.budget = budget_ * (truth_.triangles.size() + surface->triangles.size());
+    options.budget = budget_ * (truth_.triangles.size() + surface->triangles.size() + kAtLeast);
     if (options.enough < proven_at_) forget();  // not so in an asset whose errors grow
     proven_at_ = options.enough;
     const Bracket of_source = look_at_source(*surface, clusters, options);
@@ -97,6 +97,9 @@ class Brackets {
   }
 
  private:
+  /// Triangles that the budget is for at least: a small mesh may have large ones, each of which lies over many.
+  static constexpr std::uint64_t kAtLeast = 65536;
+
   void forget() {
     std::fill(near_.begin(), near_.end(), NearParts());
     std::fill(is_near_.begin(), is_near_.end(), 0);

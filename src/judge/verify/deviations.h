@@ -32,6 +32,8 @@ constexpr std::uint32_t kAllCuts = 0xFFFFFFFFU;
 /// Splits of pieces for each triangle of the source and of a cut, in all. The dragon's cuts take up to six, and every
 /// one of them is decided.
 constexpr std::uint32_t kDeviationBudget = 16;
+/// For a quick look: a cut in the middle of the dragon's errors takes four, and four seconds.
+constexpr std::uint32_t kQuickDeviationBudget = 1;
 
 /// A share of what is stored that nobody sees. A surface that is as far away as it says would never be done with.
 constexpr double kNothing = 1e-6;

@@ -266,8 +266,10 @@ void add_deviations(const run::Asset& asset, const scene::Scene& source, const V
   if (is_qem) return report.skip("I7", "not checked: tier qem states the quadric's estimate");
   const std::uint32_t cuts = options.is_quick ? 1 : options.deviation_cuts;
   if (cuts == 0) return report.skip("I7", "not checked: no cut was to be measured");
+  const std::uint32_t budget =
+      options.is_quick ? std::min(options.deviation_budget, kQuickDeviationBudget) : options.deviation_budget;
   RuleLog log;
-  report.out.brackets = check_deviations(asset, source, cuts, options.deviation_budget, log);
+  report.out.brackets = check_deviations(asset, source, cuts, budget, log);
   report.add_check("I7", describe(report.out.brackets), report.out.brackets.size(), failures_of(log, {Rule::kV206}));
   report.take(log);
 }

@@ -26,7 +26,7 @@ struct VerifyOptions {
   /// Uniform cuts per mesh that are measured for I7, where the tier promises it; kAllCuts (deviations.h): each.
   std::uint32_t deviation_cuts = 12;
   /// Splits for each triangle of the source and of such a cut, in all, after which what is open is called undecided.
-  std::uint32_t deviation_budget = 16;
+  std::uint32_t deviation_budget = kDeviationBudget;
   /// Area-uniform samples each way of such a cut, beside all vertices, for what is promised besides positions.
   std::uint64_t deviation_samples = 200000;
   std::uint64_t seed = 1;

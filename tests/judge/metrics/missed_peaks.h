@@ -11,7 +11,7 @@ struct Peak {
   Surface source;  ///< the one triangle
   Surface cut;     ///< all that is near
   double stored;   ///< what the cut said of itself
-  double truth;    ///< the distance of the point
+  double truth;    ///< the distance of the point; hardly less than the largest
 };
 
 inline Peak wide_peak() {

@@ -73,7 +73,7 @@ Surface make_box(double half) {
 void expect_truth(const Bracket& found, double truth, double rounding = 1e-9) {
   EXPECT_LE(found.lower, truth + rounding);
   EXPECT_GE(found.upper, truth - rounding);
-  EXPECT_LE(found.upper, found.lower * 1.006 + 2e-9);
+  EXPECT_LE(found.upper, found.lower * 1.003 + 2e-9);
   EXPECT_EQ(found.undecided, 0U);
 }
 
@@ -103,7 +103,7 @@ TEST(SurfaceBracket, FindsTheLineBetweenTwoSlopes) {
   const Bracket found = bracket(triangles_of(plane), triangles_of(valley));
   EXPECT_GE(found.upper, truth);
   EXPECT_LE(found.lower, std::max(left, right));
-  EXPECT_LE(found.upper, found.lower * 1.006);
+  EXPECT_LE(found.upper, found.lower * 1.003);
 }
 
 TEST(SurfaceBracket, OfAPeakIsItsHeightAndOfWhatIsBelowItLess) {
@@ -117,10 +117,10 @@ TEST(SurfaceBracket, OfABoxInASphereAndTheOtherWay) {
   const Surface sphere = make_sphere(40), box = make_box(1.0 / std::sqrt(3.0));
   const Bracket outward = bracket(sphere, box);
   EXPECT_NEAR(outward.lower, 1.0 - 1.0 / std::sqrt(3.0), 0.01);  // over the middle of a face
-  EXPECT_LE(outward.upper, outward.lower * 1.006);
+  EXPECT_LE(outward.upper, outward.lower * 1.003);
   const Bracket inward = bracket(box, sphere);
   EXPECT_NEAR(inward.lower, 1.0 - 1.0 / std::sqrt(3.0), 0.01);
-  EXPECT_LE(inward.upper, inward.lower * 1.006);
+  EXPECT_LE(inward.upper, inward.lower * 1.003);
 }
 
 TEST(SurfaceBracket, StopsAtWhatIsEnoughAndSaysNothingOfWhatIsBelow) {
@@ -144,9 +144,9 @@ TEST(SurfaceBracket, SaysWhatTheBudgetLeftUndecided) {
 TEST(SurfaceBracket, FindsThePeaksThatNoSampleMet) {
   for (const Peak& peak : {wide_peak(), narrow_peak()}) {
     const Bracket found = bracket(peak.source, peak.cut, {.enough = peak.stored, .budget = 1000});
-    EXPECT_GE(found.lower, peak.truth * 0.999);
-    EXPECT_LE(found.lower, peak.truth * 1.005);
-    EXPECT_LE(found.upper, found.lower * 1.006);
+    EXPECT_GE(found.lower, peak.truth * 0.998);
+    EXPECT_LE(found.lower, peak.truth * 1.002);
+    EXPECT_LE(found.upper, found.lower * 1.003);
     EXPECT_EQ(found.undecided, 0U);
   }
 }
@@ -193,10 +193,10 @@ TEST(SurfaceBracket, HoldsDenseSamplesOfSoupsAtAnyOffset) {
     const double dense = sampled(a, b, 40), rounding = 1e-15 * 2e7;
     const Bracket found = bracket(a, b, {.enough = 1e-6, .budget = 2000000});
     EXPECT_EQ(found.undecided, 0U) << i;
-    EXPECT_LE(found.upper, found.lower * 1.0051 + 1e-6) << i;
+    EXPECT_LE(found.upper, found.lower * 1.0021 + 1e-6) << i;
     EXPECT_GE(found.upper + rounding, dense) << i;
     const Bracket enough = bracket(a, b, {.enough = 0.9 * dense, .budget = 2000000});
-    EXPECT_GE(enough.lower * 1.0051, dense) << i << ": what is above what is enough is looked for";
+    EXPECT_GE(enough.lower * 1.0021, dense) << i << ": what is above what is enough is looked for";
     const Bracket above = bracket(a, b, {.enough = found.upper, .budget = 2000000});
     EXPECT_EQ(above.upper, found.upper) << i << ": nothing is";
   }
@@ -212,7 +212,7 @@ TEST(SurfaceBracket, OfFoldedSheetsHoldsDenseSamples) {
       add_slope(b, 4.0 * i / second, i % 2 * 0.4, 4.0 * (i + 1) / second, (i + 1) % 2 * 0.4);
     const Surface sa = triangles_of(a), sb = triangles_of(b);
     const Bracket found = bracket(sa, sb);
-    EXPECT_LE(found.upper, found.lower * 1.006);
+    EXPECT_LE(found.upper, found.lower * 1.003);
     EXPECT_GE(found.upper, sampled(sa, sb, 60));
   }
 }
