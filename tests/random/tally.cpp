@@ -22,6 +22,7 @@ void Tally::add(const Entry& entry) {
   triangles += entry.triangles;
   cuts += r.cuts;
   cuts_above += r.cuts_above;
+  cuts_undecided += r.cuts_undecided;
   largest_ratio = std::max(largest_ratio, r.largest_ratio);
   build_seconds += r.build_seconds;
   total_seconds += r.total_seconds;
@@ -55,10 +56,12 @@ void print_tally(const Tally& sum) {
               sum.build_seconds, sum.total_seconds);
   for (const auto& [reason, count] : sum.refusals) std::printf("  refused %llu: %s\n", whole(count), reason.c_str());
   for (const auto& [rule, count] : sum.rules) std::printf("  failed %llu: %s\n", whole(count), rule.c_str());
-  std::printf("I7: %llu cuts measured, %llu deviate by more than they store (%.2f%%), largest true/stored %.3f\n",
-              whole(sum.cuts), whole(sum.cuts_above),
-              sum.cuts == 0 ? 0.0 : 100.0 * static_cast<double>(sum.cuts_above) / static_cast<double>(sum.cuts),
-              sum.largest_ratio);
+  std::printf(
+      "I7: %llu cuts measured, %llu deviate by more than they store (%.2f%%), largest true/stored %.3f, "
+      "%llu undecided\n",
+      whole(sum.cuts), whole(sum.cuts_above),
+      sum.cuts == 0 ? 0.0 : 100.0 * static_cast<double>(sum.cuts_above) / static_cast<double>(sum.cuts),
+      sum.largest_ratio, whole(sum.cuts_undecided));
   if (sum.slowest.empty()) return;
   std::printf("slowest: %s, %.2f s to build 10,000 of its triangles (%llu triangles)\n", sum.slowest.c_str(),
               sum.slowest_rate, whole(sum.slowest_triangles));

@@ -22,7 +22,8 @@ struct Entry {
 
 /// A series, entry by entry: it may be as long as a night.
 struct Tally {
-  std::uint64_t scenes = 0, clean = 0, refused = 0, failed = 0, triangles = 0, cuts = 0, cuts_above = 0;
+  std::uint64_t scenes = 0, clean = 0, refused = 0, failed = 0, triangles = 0, cuts = 0, cuts_above = 0,
+                cuts_undecided = 0;
   double build_seconds = 0.0, total_seconds = 0.0, largest_ratio = 0.0;
   std::map<std::string, std::uint64_t> rules, refusals;
   std::string slowest;        ///< of scenes of 1,000 triangles and more

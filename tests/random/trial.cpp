@@ -2,6 +2,7 @@
 #include "trial.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
@@ -53,15 +54,17 @@ void note_findings(TrialResult& result, const json& findings) {
   }
 }
 
-/// "… true/stored median 0.92, largest 1.059, above 1 in 1 cuts" with the number of cuts beside it.
-void note_deviations(TrialResult& result, const json& checks) {
-  for (const json& check : checks) {
-    const std::string what = check.value("what", "");
-    const std::size_t largest = what.find("largest "), above = what.find("above 1 in ");
-    if (check.value("invariant", "") != "I7" || largest == std::string::npos || above == std::string::npos) continue;
-    result.cuts += check.value("items", std::uint64_t{0});
-    result.cuts_above += std::strtoull(what.c_str() + above + 11, nullptr, 10);
-    result.largest_ratio = std::max(result.largest_ratio, std::strtod(what.c_str() + largest + 8, nullptr));
+void note_deviations(TrialResult& result, const json& cuts) {
+  for (const json& cut : cuts) {
+    ++result.cuts;
+    const std::string verdict = cut.value("verdict", "");
+    const bool is_above = verdict == "above";
+    if (verdict == "undecided") ++result.cuts_undecided;
+    if (is_above) ++result.cuts_above;
+    const double stored = cut.value("stored", 0.0);
+    const double lower = cut.contains("lower") && cut["lower"].is_number() ? cut["lower"].get<double>() : HUGE_VAL;
+    const double ratio = stored > 0.0 ? lower / stored : HUGE_VAL;
+    result.largest_ratio = std::max(result.largest_ratio, is_above ? ratio : std::min(ratio, 1.0));
   }
 }
 
@@ -116,7 +119,7 @@ void verify(TrialResult& result, const TrialOptions& options, const std::string&
   const json report = json::parse(ran.out, nullptr, false);
   if (!report.is_object() || !report.contains("findings")) return note(result, "verify:output", "no JSON of verify's");
   note_findings(result, report["findings"]);
-  note_deviations(result, report["checks"]);
+  note_deviations(result, report.value("deviations", json::array()));
   if (ran.exit_code == 6 && report["findings"].empty()) note(result, "verify:silent", "exit 6 without a finding");
 }
 

@@ -35,8 +35,9 @@ struct TrialResult {
   std::optional<std::string> refusal;  ///< the build's one line, without the file's name: a refusal is not a failure
   std::string detail;                  ///< the first finding in words
   double build_seconds = 0.0, total_seconds = 0.0;  ///< processor time
-  std::uint64_t cuts = 0, cuts_above = 0;  ///< I7: cuts measured, and those that deviate by more than they store
-  double largest_ratio = 0.0;              ///< true over stored, of all cuts
+  /// I7: cuts measured, those that deviate by more than they store, and those of which that was not found out.
+  std::uint64_t cuts = 0, cuts_above = 0, cuts_undecided = 0;
+  double largest_ratio = 0.0;  ///< met over stored, of all cuts
 
   [[nodiscard]] bool is_clean() const { return rules.empty() && !refusal; }
 };

@@ -15,8 +15,9 @@ constexpr const char* kWell = R"(#!/bin/sh
 case $1 in
   build) echo asset > "$4" ;;
   validate) echo '{"files": [{"findings": []}]}' ;;
-  verify) echo '{"findings": [], "checks": [{"invariant": "I7", "items": 12,
-            "what": "cuts deviate by what they store: true/stored median 0.92, largest 1.037, above 1 in 2 cuts"}]}' ;;
+  verify) echo '{"findings": [], "checks": [], "deviations": [
+            {"stored": 0.5, "lower": 0.46, "verdict": "within"}, {"stored": 2, "lower": 2.0625, "verdict": "above"},
+            {"stored": 0, "lower": 0, "verdict": "undecided"}, {"stored": 4, "lower": 4.125, "verdict": "above"}]}' ;;
 esac
 )";
 
@@ -50,9 +51,10 @@ class Trial : public testing::Test {
 TEST_F(Trial, AProgramThatIsWellIsClean) {
   const TrialResult result = try_program(kWell);
   EXPECT_TRUE(result.is_clean()) << result.detail;
-  EXPECT_EQ(result.cuts, 12U);
+  EXPECT_EQ(result.cuts, 4U);
   EXPECT_EQ(result.cuts_above, 2U);
-  EXPECT_EQ(result.largest_ratio, 1.037);
+  EXPECT_EQ(result.cuts_undecided, 1U);
+  EXPECT_EQ(result.largest_ratio, 1.03125);
 }
 
 TEST_F(Trial, VerifyIsToldTheSamples) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <charconv>
 #include <cstdio>
 #include <optional>
 #include <string>
@@ -56,6 +57,23 @@ std::string describe(const judge::VerifyReport& report, bool quiet) {
   return text;
 }
 
+void write_brackets(JsonWriter& json, std::span<const judge::CutBracket> brackets) {
+  json.key("deviations");
+  json.begin_array();
+  for (const judge::CutBracket& cut : brackets) {
+    json.begin_object();
+    json.field("mesh", cut.mesh.value);
+    json.field("error", cut.threshold);
+    json.field("stored", cut.stored);
+    json.field("lower", cut.lower);
+    json.field("upper", cut.upper);
+    json.field("verdict", cut.is_above(1.0) ? "above" : cut.is_undecided() ? "undecided" : "within");
+    json.field("undecided_pieces", cut.undecided);
+    json.end_object();
+  }
+  json.end_array();
+}
+
 std::string to_json(const std::string& path, const std::string& source, const judge::VerifyOptions& options,
                     const judge::VerifyReport& report) {
   JsonWriter json;
@@ -65,7 +83,13 @@ std::string to_json(const std::string& path, const std::string& source, const ju
   json.field("quick", options.is_quick);
   json.field("uniform_cuts", options.uniform_cuts);
   json.field("cameras", options.cameras);
-  json.field("deviation_cuts", options.is_quick ? 1 : options.deviation_cuts);
+  json.key("deviation_cuts");
+  if (options.deviation_cuts == judge::kAllCuts && !options.is_quick) {
+    json.value("all");
+  } else {
+    json.value(std::uint64_t{options.is_quick ? 1 : options.deviation_cuts});
+  }
+  json.field("deviation_budget", options.deviation_budget);
   json.field("deviation_samples", options.deviation_samples);
   json.field("seed", options.seed);
   json.field("verified", report.finding_count == 0);
@@ -91,6 +115,7 @@ std::string to_json(const std::string& path, const std::string& source, const ju
     json.field("keeps_topology", report.crowded_edges->keeps_topology);
     json.end_object();
   }
+  if (!report.brackets.empty()) write_brackets(json, report.brackets);
   if (!report.promises.empty()) {
     json.key("promises");
     json.begin_array();
@@ -160,6 +185,7 @@ int run_verify(const Verb& verb, std::span<char* const> args) {
   std::string source_path;
   GpuOptions gpu_options;
   std::uint32_t jobs = 0;
+  std::string deviation_cuts = "12";
   std::string max_decoded_text = kDefaultMaxDecodedText;
   std::vector<std::string> allow_outside;
   bool repair = false, linear_colors = false, is_forced = false;
@@ -176,9 +202,12 @@ int run_verify(const Verb& verb, std::span<char* const> args) {
   parser.add_flag("--force", is_forced, "compare with another scene, too, than the one that the asset was built from");
   parser.add_value("--cuts", options.uniform_cuts, "uniform cuts per mesh that cross-check the border proof");
   parser.add_value("--cameras", options.cameras, "random cameras that cross-check selection and hierarchy");
-  parser.add_value("--deviation-cuts", options.deviation_cuts,
-                   "uniform cuts per mesh that are measured against the source");
-  parser.add_value("--samples", options.deviation_samples, "area-uniform samples of each such cut, each way (200000)");
+  parser.add_value("--deviation-cuts", deviation_cuts,
+                   "uniform cuts per mesh that are measured against the source, or all of them: all");
+  parser.add_value("--deviation-budget", options.deviation_budget,
+                   "splits for each triangle, after which what is open of such a cut is called undecided");
+  parser.add_value("--samples", options.deviation_samples,
+                   "area-uniform samples of each such cut, each way, for promises besides positions (200000)");
   parser.add_value("--seed", options.seed, "of the random cameras");
   parser.add_flag("--gpu", gpu_options.is_on, "let a Vulkan device decode, select and draw the same, and compare");
   parser.add_value("--device", gpu_options.device, "with --gpu: an index or a part of the name (the first that can)");
@@ -200,6 +229,13 @@ int run_verify(const Verb& verb, std::span<char* const> args) {
   if (gpu_options.promise != "position" && !gpu_options.is_on) {
     return print_error(
         {ErrorCode::kUsage, "--promise", "chooses what --gpu draws: uniform cuts are measured by all promises"});
+  }
+  if (deviation_cuts == "all") {
+    options.deviation_cuts = judge::kAllCuts;
+  } else if (const auto read = std::from_chars(deviation_cuts.data(), deviation_cuts.data() + deviation_cuts.size(),
+                                               options.deviation_cuts);
+             read.ec != std::errc() || read.ptr != deviation_cuts.data() + deviation_cuts.size()) {
+    return print_error({ErrorCode::kUsage, "--deviation-cuts", "a number of cuts, or all"});
   }
   if (const Status samples = check_samples(options.deviation_samples); !samples) return print_error(samples.error());
 
@@ -236,7 +272,10 @@ int run_verify(const Verb& verb, std::span<char* const> args) {
   if (!source) return print_error(source.error());
   const Result<MappedFile> file = MappedFile::open(source_path);
   if (file) options.source_bytes = file->bytes();
-  if (options.is_quick) options.uniform_cuts = options.cameras = 0;  // as it is reported
+  if (options.is_quick) {  // as it is reported
+    options.uniform_cuts = options.cameras = 0;
+    options.deviation_budget = std::min(options.deviation_budget, judge::kQuickDeviationBudget);
+  }
   auto other = is_forced ? std::nullopt : find_other_source(*asset, *source);
   judge::VerifyReport report = other ? std::move(*other) : judge::verify_asset(*asset, *source, options);
   if (gpu_options.is_on && !other) {

@@ -3,7 +3,9 @@
 // positions, UVs and normals (V209). Internal to the judge.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
+#include <vector>
 
 #include <meshlode/format.h>
 
@@ -16,12 +18,32 @@
 
 namespace meshlode::judge {
 
-/// measure_cuts() of a promise: level 0, and up to `cuts` uniform cuts by its errors. Object units of the product
+/// A uniform cut with what it stores and what it was found to deviate by, by samples.
+struct CutDeviation {
+  double threshold = 0.0, stored = 0.0;
+  LargestDeviation truth;  ///< a: the source, b: the cut
+  double rounding = 0.0;   ///< of the positions that were measured
+  [[nodiscard]] bool is_above(double limit) const { return truth.max > limit * stored + rounding; }
+  /// True over stored; 0 where the true deviation is nothing but rounding.
+  [[nodiscard]] double ratio() const {
+    if (truth.max <= rounding) return 0.0;
+    return stored > 0.0 ? truth.max / stored : HUGE_VAL;
+  }
+};
+
+/// Level 0, and up to `cuts` uniform cuts by its errors. Object units of the product
 /// space. Errors: as run::load_page(). \pre the asset has the promise
 [[nodiscard]] Result<std::vector<CutDeviation>> measure_promised_cuts(const run::Asset& asset, MeshId mesh,
                                                                       const scene::SourceMesh& source,
                                                                       format::Promise promise, std::uint32_t cuts,
                                                                       std::uint64_t samples);
+
+struct DeviationTotals {
+  std::uint64_t cuts = 0;      ///< measured
+  std::uint64_t exceeded = 0;  ///< true deviation above the stored error, by however little
+  double worst = 0.0;          ///< largest true / stored
+  double median = 0.0;         ///< of true / stored
+};
 
 /// V209 for one promise: every mesh that is no aggregate, in every tier: where positions are estimated, promises are
 /// measured. A cut fails above 1 + kMeasuredShortfall times what it stores, a `certified` one above 1.

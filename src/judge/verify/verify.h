@@ -11,6 +11,7 @@
 #include <meshlode/result.h>
 
 #include "judge/validate/validate.h"
+#include "judge/verify/deviations.h"
 #include "run/read/asset.h"
 #include "scene/scene.h"
 
@@ -20,10 +21,14 @@ struct VerifyOptions {
   /// Structure, border proof, what surrounds the geometry, and one measured cut of each mesh, in the middle of its
   /// errors. Triangles are not looked for, no other cut and no camera is looked at, and the counts below are not asked.
   bool is_quick = false;
-  std::uint32_t uniform_cuts = 300;   ///< cuts per mesh that cross-check I6
-  std::uint32_t cameras = 100;        ///< cameras that cross-check I5, I6 and I8
-  std::uint32_t deviation_cuts = 12;  ///< uniform cuts per mesh that are measured for I7, where the tier promises it
-  std::uint64_t deviation_samples = 200000;  ///< area-uniform samples each way of each such cut, beside all vertices
+  std::uint32_t uniform_cuts = 300;  ///< cuts per mesh that cross-check I6
+  std::uint32_t cameras = 100;       ///< cameras that cross-check I5, I6 and I8
+  /// Uniform cuts per mesh that are measured for I7, where the tier promises it; kAllCuts (deviations.h): each.
+  std::uint32_t deviation_cuts = 12;
+  /// Splits for each triangle of the source and of such a cut, in all, after which what is open is called undecided.
+  std::uint32_t deviation_budget = kDeviationBudget;
+  /// Area-uniform samples each way of such a cut, beside all vertices, for what is promised besides positions.
+  std::uint64_t deviation_samples = 200000;
   std::uint64_t seed = 1;
   /// The source's file as it lies there, for what its size says of it. Empty: that is not looked at.
   std::span<const std::uint8_t> source_bytes = {};
@@ -48,6 +53,7 @@ struct VerifyReport {
     bool keeps_topology = false;  ///< as the asset says: no cut may have more than level 0 then (V207)
   };
   std::optional<CrowdedEdges> crowded_edges;
+  std::vector<CutBracket> brackets;  ///< V206
   /// What is promised besides positions, measured (V209); one for each promise that the asset has.
   struct PromisedCuts {
     std::string promise;         ///< "texels"

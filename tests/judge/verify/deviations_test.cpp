@@ -9,11 +9,14 @@
 
 #include "builder/builder.h"
 #include "builder/measure/measure.h"
+#include "judge/metrics/metrics.h"
 #include "judge/validate/edit.h"
 #include "judge/validate/validate.h"
+#include "judge/verify/deviations.h"
 #include "judge/verify/verify.h"
 #include "lab/samples/samples.h"
 #include "run/read/asset.h"
+#include "run/select/select.h"
 
 namespace meshlode::judge {
 namespace {
@@ -25,9 +28,9 @@ struct Built {
   std::vector<std::uint8_t> bytes;
 };
 
-Built build_rock(format::ErrorTier tier) {
+Built build_rock(format::ErrorTier tier, std::uint32_t detail = 16) {
   Built built;
-  built.scene = lab::as_scene(lab::as_mesh(lab::with_smooth_normals(lab::make_rock(16))));
+  built.scene = lab::as_scene(lab::as_mesh(lab::with_smooth_normals(lab::make_rock(detail))));
   builder::PipelineOptions options;
   options.error_tier = tier;
   builder::PipelineReport report;
@@ -91,6 +94,67 @@ TEST_P(StoredErrors, AreFoundWhereTheySayNothingDeviates) {
   scale_errors(none, 0.0F);
   EXPECT_EQ(ids_of(verify_bytes(none.bytes(), built.scene)), "V206") << "no other rule can know";
   EXPECT_EQ(ids_of(verify_bytes(none.bytes(), built.scene, true)), "V206") << "where 0 is the only cut there is";
+}
+
+// A tenth less at one group is more than the margin. Every cut is looked at, so that of its own error too.
+TEST_P(StoredErrors, AreFoundWhereOneGroupSaysATenthLess) {
+  const Built built = build_rock(GetParam());
+  const Result<run::Asset> asset = run::Asset::from_vector(built.bytes);
+  ASSERT_TRUE(asset.ok());
+  std::uint32_t lowered = 0, found = 0;
+  for (std::uint32_t g = 0; g < asset->groups().size(); ++g) {
+    const float error = asset->groups()[g].error;
+    if (error >= format::kInfiniteError) continue;
+    AssetEdit edit(built.bytes);
+    edit.group(g, [](auto& group) {
+      group.error *= 0.9F;
+      group.deviation *= 0.9F;
+    });
+    edit.seal();
+    const Result<run::Asset> broken = run::Asset::from_vector(edit.bytes());
+    ASSERT_TRUE(broken.ok());
+    RuleLog log;
+    const auto cuts = check_deviations(*broken, built.scene, kAllCuts, kDeviationBudget, log);
+    ++lowered;
+    if (log.count_of(Rule::kV206) > 0) ++found;
+    const auto own = std::find_if(cuts.begin(), cuts.end(),
+                                  [&](const CutBracket& cut) { return cut.threshold == double{error * 0.9F}; });
+    if (own == cuts.end()) continue;
+    EXPECT_GT(own->upper, own->stored) << "group " << g;
+    EXPECT_FALSE(own->is_undecided()) << "group " << g;
+  }
+  ASSERT_GT(lowered, 4U);
+  // A bound may be more than a tenth above the truth.
+  if (GetParam() == format::ErrorTier::kMeasured) {
+    EXPECT_EQ(found, lowered);
+  }
+}
+
+// What is proven in one cut and kept for the next is what is found of each cut alone.
+TEST_P(StoredErrors, AreJudgedAlikeInAllCutsAndInEachAlone) {
+  const Built built = build_rock(GetParam(), 40);
+  AssetEdit edit(built.bytes);
+  scale_errors(edit, 0.97F);  // about half of the cuts are above then
+  const Result<run::Asset> asset = run::Asset::from_vector(edit.bytes());
+  ASSERT_TRUE(asset.ok());
+  const auto all = bracket_cuts(*asset, MeshId(0U), built.scene.meshes[0], kAllCuts, kDeviationBudget);
+  ASSERT_TRUE(all.ok());
+  ASSERT_GT(all->size(), 5U);
+  const Surface source = surface_of_source(built.scene.meshes[0]);
+  const DeviationFrom from_source(source, {.samples = 20000});
+  for (const CutBracket& cut : *all) {
+    const run::UniformCut selected = run::select_uniform(*asset, MeshId(0U), cut.threshold);
+    const auto surface = surface_of_clusters(*asset, MeshId(0U), selected.clusters);
+    ASSERT_TRUE(surface.ok());
+    const double sampled = from_source.find_largest(*surface).max;
+    EXPECT_EQ(cut.stored, selected.stored_error);
+    EXPECT_GE(cut.upper, sampled * (1.0 - 1e-9)) << cut.threshold;
+    EXPECT_FALSE(cut.is_undecided()) << cut.threshold;
+    if (sampled > cut.stored * (1.0 + 1e-9)) {
+      EXPECT_TRUE(cut.is_above(1.0)) << cut.threshold;
+      EXPECT_GE(cut.lower, sampled / 1.003) << cut.threshold;
+    }
+  }
 }
 
 TEST_P(StoredErrors, AreAtLeastTheDeviationTimesTheMarginOfTheSettings) {
