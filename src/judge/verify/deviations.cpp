@@ -17,7 +17,6 @@ std::vector<double> spread_thresholds(std::span<const format::GroupRecord> group
   float high = 0.0F;
   bool any_zero = false;
   for (const format::GroupRecord& group : groups) {
-    if ((group.flags & format::kGroupAggregate) != 0) continue;  // a pixel's size, no distance
     if (group.error == 0.0F) any_zero = true;
     if (group.error >= format::kInfiniteError || !(group.error > 0.0F)) continue;
     low = std::min(low, group.error);
@@ -37,48 +36,6 @@ double position_rounding(const format::MeshRecord& mesh) {
   const double farthest = std::max({std::abs(mesh.origin[0]), std::abs(mesh.origin[1]), std::abs(mesh.origin[2])});
   return 1e-12 * mesh.diagonal + 0x1p-51 * (farthest + mesh.diagonal);
 }
-
-namespace {
-
-/// What a cut stores of the clusters that go by distances.
-double stored_error_of(const run::Asset& asset, const format::MeshRecord& mesh, std::span<const ClusterId> clusters) {
-  double error = mesh.level0_deviation;
-  for (const ClusterId c : clusters) {
-    const std::uint32_t group = asset.clusters()[c.value].own_group;
-    if (group != format::kNone) error = std::max(error, double{asset.groups()[group].error});
-  }
-  return error;
-}
-
-/// The part of a mesh that is no aggregate. Which triangles of the source these are the source does not say; level 0
-/// does, and is it but for the grid.
-Result<std::vector<CutDeviation>> measure_other_part(const run::Asset& asset, MeshId mesh, std::uint32_t cuts,
-                                                     std::uint64_t samples) {
-  const format::MeshRecord& record = asset.meshes()[mesh.value];
-  const auto clusters_at = [&](double threshold) {
-    return clusters_of_part(asset, run::select_uniform(asset, mesh, threshold).clusters, Part::kOther);
-  };
-  std::vector<CutDeviation> measured;
-  std::vector<ClusterId> previous = clusters_at(-1.0);
-  const std::vector<double> thresholds =
-      spread_thresholds(asset.groups().subspan(record.first_group, record.group_count), cuts);
-  if (previous.empty() || thresholds.empty()) return measured;
-  const Result<Surface> truth = surface_of_clusters(asset, mesh, previous);
-  if (!truth) return truth.error();
-  const DeviationFrom from_truth(*truth, {.samples = samples});
-  for (const double threshold : thresholds) {
-    const std::vector<ClusterId> clusters = clusters_at(threshold);
-    if (clusters == previous) continue;
-    previous = clusters;
-    const Result<Surface> surface = surface_of_clusters(asset, mesh, clusters);
-    if (!surface) return surface.error();
-    measured.push_back({threshold, stored_error_of(asset, record, clusters), from_truth.find_largest(*surface),
-                        position_rounding(record) + double{record.level0_deviation}});
-  }
-  return measured;
-}
-
-}  // namespace
 
 void summarize(std::vector<double> ratios, DeviationTotals& totals) {
   if (ratios.empty()) return;
@@ -112,11 +69,9 @@ DeviationTotals check_deviations(const run::Asset& asset, const scene::Scene& so
   std::vector<double> ratios;
   for (std::uint32_t m = 0; m < std::min(asset.meshes().size(), source.meshes.size()); ++m) {
     const format::ErrorTier tier = asset.meshes()[m].error_tier;
-    if (tier == format::ErrorTier::kQem) continue;
+    if (tier == format::ErrorTier::kQem || has_aggregates(asset, MeshId(m))) continue;
     const double limit = tier == format::ErrorTier::kCertified ? 1.0 : 1.0 + kMeasuredShortfall;
-    const auto measured = has_aggregates(asset, MeshId(m))
-                              ? measure_other_part(asset, MeshId(m), cuts, samples)
-                              : measure_cuts(asset, MeshId(m), source.meshes[m], cuts, samples);
+    const auto measured = measure_cuts(asset, MeshId(m), source.meshes[m], cuts, samples);
     if (!measured) {
       log.add(Rule::kL204, measured.error().where, measured.error().detail);
       continue;
