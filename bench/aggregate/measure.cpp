@@ -35,10 +35,7 @@ int measure(const char* path) {
   for (int k = 0; k < 3; ++k) longest = std::max(longest, (double{1} * mesh.bounds_max[k] - mesh.bounds_min[k]) * step);
   const draw::AlphaMasks masks = draw::load_alpha_masks(asset);
   const auto covering = [&](const std::vector<ClusterId>& clusters) {
-    const bool has_part = judge::has_aggregates(asset, MeshId(0U));  // else all is looked at, for comparison
-    return judge::covering_triangles(
-        asset, masks, MeshId(0U),
-        has_part ? judge::clusters_of_part(asset, clusters, judge::Part::kAggregate) : clusters);
+    return judge::covering_triangles(asset, masks, MeshId(0U), clusters);
   };
   const auto source = covering(run::select_uniform(asset, MeshId(0U), -1.0).clusters);
   if (!source) return 3;

@@ -128,7 +128,8 @@ enum class UvErrorUnit : std::uint8_t {
 /// (docs/aggregates.md).
 enum class AggregateChoice : std::uint8_t {
   kNever,
-  kAuto,    ///< meshes of many small loose pieces, and parts of meshes that are: the leaves of a tree, its trunk not
+  kAuto,    ///< meshes of many small loose pieces, and parts of meshes that are: the leaves of a tree, its trunk not.
+            ///< A part is a mesh of the asset, "tree#leaves", behind those of the input (docs/aggregates.md)
   kAlways,  ///< all pieces of at most 512 triangles
   kNamed,   ///< those of BuildOptions::aggregate_names
 };

@@ -15,10 +15,9 @@
 #include "builder/aggregate/aggregate_choice.h"
 #include "builder/aggregate/coarse_materials.h"
 #include "builder/aggregate/material_looks.h"
-#include "builder/aggregate/split_mesh.h"
+#include "builder/aggregate/mesh_parts.h"
 #include "builder/dag/aggregate_dag.h"
 #include "builder/dag/build_dag.h"
-#include "builder/dag/join_dags.h"
 #include "builder/encode/encode.h"
 #include "builder/hierarchy/hierarchy.h"
 #include "builder/hooks.h"
@@ -173,40 +172,19 @@ std::uint32_t promises_of(format::Promise promise) {
   return 0;
 }
 
-/// The levels of one prepared mesh, whose surface is freed: by distances, by coverage, or each part by its own.
-Result<LodDag> build_levels(PreparedMesh& mesh, const AggregateDecision& aggregate, const Survey& found,
-                            const PaintedUnits& painted, const PipelineOptions& options, const MeshOptions& own,
-                            const EncodeOptions& encoding,
+/// The levels of one prepared mesh, whose surface is freed: by coverage where it is an aggregate, else by distances.
+Result<LodDag> build_levels(PreparedMesh& mesh, bool is_aggregate, const Survey& found, const PaintedUnits& painted,
+                            const PipelineOptions& options, const MeshOptions& own, const EncodeOptions& encoding,
                             const std::function<bool(std::uint32_t, std::uint64_t)>& on_level) {
-  const auto coarsening = [&](const PreparedMesh& part) {
-    DagOptions dag = dag_options(options, part, encoding);
-    dag.on_level = on_level;
-    dag.simplify.painted = painted;
-    return dag;
-  };
-  const auto measured = [&](PreparedMesh& part, const auto& build) {
-    if (own.error_tier == format::ErrorTier::kQem) release(part.exact_positions, part.exact_triangles);
-    Result<LodDag> dag = build();
-    if (dag) measure(part, own.error_tier, *dag);
-    release(part.exact_positions, part.exact_triangles);
-    return dag;
-  };
-  const auto by_distance = [&](PreparedMesh& part) {
-    return measured(part, [&] { return build_dag_and_free(part, coarsening(part)); });
-  };
-  const auto by_coverage = [&](PreparedMesh& part, const PlaceSet& others) {
-    return measured(
-        part, [&] { return build_aggregate_dag_and_free(part, found.coarse.of_source, coarsening(part), others); });
-  };
-  if (!aggregate.is_aggregate) return by_distance(mesh);
-  if (aggregate.most_triangles.empty()) return by_coverage(mesh, {});
-  SplitMesh parts = split_and_free(mesh, aggregate.most_triangles);
-  const Result<LodDag> solid = by_distance(parts.solid);
-  if (!solid) return solid.error();
-  const PlaceSet places(solid->vertex_position.begin(), solid->vertex_position.end());
-  const Result<LodDag> loose = by_coverage(parts.loose, places);
-  if (!loose) return loose.error();
-  return join_dags(*loose, *solid, mesh.layout);
+  DagOptions coarsening = dag_options(options, mesh, encoding);
+  coarsening.on_level = on_level;
+  coarsening.simplify.painted = painted;
+  if (own.error_tier == format::ErrorTier::kQem) release(mesh.exact_positions, mesh.exact_triangles);
+  Result<LodDag> dag = is_aggregate ? build_aggregate_dag_and_free(mesh, found.coarse.of_source, coarsening)
+                                    : build_dag_and_free(mesh, coarsening);
+  if (dag) measure(mesh, own.error_tier, *dag);
+  release(mesh.exact_positions, mesh.exact_triangles);
+  return dag;
 }
 
 /// One mesh from its source triangles to pages.
@@ -255,7 +233,7 @@ Result<BuiltMesh> build_mesh(const Source& from, std::size_t index, const Survey
   const PaintedUnits units = painted ? units_to_simplify_by(*painted, mesh->diagonal) : PaintedUnits();
   const DagOptions coarsening = dag_options(options, *mesh, encoding);
   LevelClock levels(index);
-  const Result<LodDag> dag = build_levels(*mesh, aggregate, found, units, options, own, encoding,
+  const Result<LodDag> dag = build_levels(*mesh, aggregate.is_aggregate, found, units, options, own, encoding,
                                           [&](std::uint32_t level, std::uint64_t triangles) {
                                             levels.end(level, triangles);
                                             return progress.report(index, level, triangles);
@@ -340,15 +318,19 @@ void add_scene_decisions(const scene::Scene& scene, const std::vector<EncodedMes
   decisions.push_back(std::move(decision));
 }
 
-Result<std::vector<std::uint8_t>> build_asset_of(const Source& from, const PipelineOptions& options,
+Result<std::vector<std::uint8_t>> build_asset_of(const Source& given, PipelineOptions options,
                                                  const ProgressCallback& progress, PipelineReport& report) {
-  const scene::Scene& scene = from.scene;
-  if (const Status s = check_build(scene, options); !s) return s.error();
-  std::vector<AggregateDecision> aggregates = decide_aggregates(scene, options);
-  const Result<MemoryFit> fit = check_memory(scene, options, aggregates, report);
+  if (const Status s = check_build(given.scene, options); !s) return s.error();
+  std::vector<AggregateDecision> aggregates = decide_aggregates(given.scene, options);
+  const Result<MemoryFit> fit = check_memory(given.scene, options, aggregates, report);
   if (!fit) return fit.error();
-  Result<Survey> found = survey(scene, options, std::move(aggregates));
+  Result<Survey> found = survey(given.scene, options, std::move(aggregates));
   if (!found) return found.error();
+  const std::vector<scene::MeshPart> parts = plan_parts(given.scene, found->aggregates, options);
+  std::optional<scene::Scene> split;  // what is the caller's own stays as it is
+  if (!parts.empty()) scene::split_parts(given.owned != nullptr ? *given.owned : split.emplace(given.scene), parts);
+  const Source from = split ? Source{*split, &*split} : given;
+  const scene::Scene& scene = from.scene;
   Result<std::vector<BuiltMesh>> meshes =
       with_threads_at_most(fit->threads, [&] { return build_meshes(from, options, *found, fit->at_once, progress); });
   if (!meshes) return meshes.error();
@@ -379,7 +361,7 @@ Result<std::vector<std::uint8_t>> build_asset_of(const Source& from, const Pipel
     input.mesh_names.push_back(scene.meshes[i].name);
   }
   add_scene_decisions(scene, input.meshes, options, report.decisions);
-  input.meta_json = meta_json(scene, options, report.decisions);
+  input.meta_json = meta_json(scene, options, report.decisions, parts);
 
   StageClock clock;
   Result<std::vector<std::uint8_t>> bytes = write_asset(std::move(input));

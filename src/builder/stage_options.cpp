@@ -116,12 +116,7 @@ DagOptions dag_options(const PipelineOptions& options, const PreparedMesh& mesh,
 
 AggregateQuestion aggregate_question(const scene::Scene& scene, std::size_t mesh, const PipelineOptions& options) {
   const MeshOptions& own = options.of_mesh(mesh);
-  return {own.aggregate,
-          own.aggregate_names,
-          options.keep_topology,
-          own.lock_borders,
-          options.promise == format::Promise::kPosition,
-          scene.materials};
+  return {own.aggregate, own.aggregate_names, options.keep_topology, own.lock_borders, scene.materials};
 }
 
 std::vector<PlanDecision> unknown_names(const scene::Scene& scene, const PipelineOptions& options) {

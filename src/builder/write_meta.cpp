@@ -141,6 +141,20 @@ Json settings_json(const scene::Scene& scene, const PipelineOptions& options,
   return settings;
 }
 
+/// Which meshes are parts of others: by material how many triangles a piece has at most that is one of theirs.
+Json parts_json(std::span<const scene::MeshPart> parts, std::size_t mesh_count) {
+  Json list = Json::array();
+  std::size_t mesh = mesh_count - parts.size();
+  for (const scene::MeshPart& part : parts) {
+    Json pieces = Json::array();
+    for (std::size_t m = 0; m < part.most_triangles.size(); ++m) {
+      if (part.most_triangles[m] > 0) pieces.push_back({{"material", m}, {"triangles", part.most_triangles[m]}});
+    }
+    list.push_back({{"mesh", mesh++}, {"of", part.of}, {"pieces", std::move(pieces)}});
+  }
+  return list;
+}
+
 /// One past the string that begins at `at`. Stays inside any text: the parser that accepted it stops at a zero byte.
 std::size_t end_of_string(std::string_view text, std::size_t at) {
   for (++at; at < text.size() && text[at] != '"'; ++at) {
@@ -189,11 +203,12 @@ std::string meta_with_codec(std::string_view meta, format::Codec codec) {
 }
 
 std::string meta_json(const scene::Scene& scene, const PipelineOptions& options,
-                      const std::vector<PlanDecision>& decisions) {
+                      const std::vector<PlanDecision>& decisions, std::span<const scene::MeshPart> parts) {
   Json meta;
   meta["generator"] = program_version();
   meta["source"] = {{"file", scene.source_name}, {"hash", scene.source_hash}};
   meta["settings"] = settings_json(scene, options, decisions);
+  if (!parts.empty()) meta["parts"] = parts_json(parts, scene.meshes.size());
   meta["plan"] = Json::array();
   for (const PlanDecision& decision : decisions) {
     meta["plan"].push_back({{"what", decision.what}, {"kept", decision.kept}, {"reason", decision.reason}});

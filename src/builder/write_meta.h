@@ -2,6 +2,7 @@
 // The META text of an asset: where it came from, what was decided, what was left out. No paths, no time, no job count.
 #pragma once
 
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -10,11 +11,14 @@
 
 #include "builder/options.h"
 #include "builder/plan/plan.h"
+#include "scene/parts/split_parts.h"
 
 namespace meshlode::builder {
 
+/// `parts`: which meshes of the scene, its last, are parts of others.
 [[nodiscard]] std::string meta_json(const scene::Scene& scene, const PipelineOptions& options,
-                                    const std::vector<PlanDecision>& decisions);
+                                    const std::vector<PlanDecision>& decisions,
+                                    std::span<const scene::MeshPart> parts = {});
 
 /// The same text with another name for the codec in its settings, to the byte. A text that is no JSON, or does not say
 /// a codec, stays as it is.

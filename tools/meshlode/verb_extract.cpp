@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "app/export/export.h"
+#include "app/report/read_meta.h"
 #include "base/json_writer.h"
 #include "extract_cuts.h"
 #include "extract_stuck.h"
@@ -49,15 +50,21 @@ Status check_options(const ExtractOptions& o) {
   return Ok{};
 }
 
-/// The meshes to export: all, or those of that name, or the one with that index.
+/// The meshes to export: all, or those of that name, or the one with that index; with each its parts.
 Result<std::vector<bool>> choose_meshes(const run::Asset& asset, const std::optional<std::string>& wanted) {
   std::vector<bool> chosen(asset.meshes().size(), !wanted);
   if (!wanted) return chosen;
+  const std::vector<std::size_t> origins =
+      app::origins_of_meshes(app::read_meta(asset.meta_json()), asset.meshes().size());
+  const auto add_parts = [&] {
+    for (std::size_t m = 0; m < chosen.size(); ++m) chosen[m] = chosen[m] || chosen[origins[m]];
+  };
   bool is_found = false;
   for (std::size_t m = 0; m < chosen.size(); ++m) {
     chosen[m] = asset.string(asset.meshes()[m].name) == *wanted;
     is_found = is_found || chosen[m];
   }
+  add_parts();
   if (is_found) return chosen;
   std::size_t index = 0;
   const char* end = wanted->data() + wanted->size();
@@ -66,6 +73,7 @@ Result<std::vector<bool>> choose_meshes(const run::Asset& asset, const std::opti
     return usage("--mesh", "no mesh has this name or index");
   }
   chosen[index] = true;
+  add_parts();
   return chosen;
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 #include <span>
 #include <string_view>
 #include <type_traits>
@@ -107,13 +108,70 @@ LevelChange compare_level(std::uint32_t level, const MeshInfo& a, const MeshInfo
        level_change("uv_deviation_max", before, after, &LevelInfo::uv_deviation_max)}};
 }
 
-MeshChange compare_mesh(const Described& before, const Described& after, const EntryPair& pair) {
-  const format::MeshRecord& a = before.asset.meshes()[pair.old_index];
-  const format::MeshRecord& b = after.asset.meshes()[pair.new_index];
-  const MeshInfo& info_a = before.info.meshes[pair.old_index];
-  const MeshInfo& info_b = after.info.meshes[pair.new_index];
+/// A mesh of one side, with the parts of it that the other side does not have as meshes.
+struct ComparedMesh {
+  std::uint32_t index = 0;
+  std::string_view name;
+  format::MeshRecord record;
+  MeshInfo info;
+};
+
+void add_level(const LevelInfo& part, LevelInfo& whole) {
+  const auto clusters = static_cast<double>(whole.clusters), more = static_cast<double>(part.clusters);
+  if (more > 0.0) whole.fill = (clusters * whole.fill + more * part.fill) / (clusters + more);
+  for (auto count : {&LevelInfo::clusters, &LevelInfo::triangles, &LevelInfo::vertices, &LevelInfo::full_clusters,
+                     &LevelInfo::groups, &LevelInfo::stuck_groups}) {
+    whole.*count += part.*count;
+  }
+  whole.error_min = std::min(whole.error_min, part.error_min);
+  for (auto most : {&LevelInfo::error_max, &LevelInfo::normal_deviation_max, &LevelInfo::uv_deviation_max}) {
+    whole.*most = std::max(whole.*most, part.*most);
+  }
+}
+
+void add_part(const ComparedMesh& part, ComparedMesh& whole) {
+  whole.record.source_triangles += part.record.source_triangles;
+  whole.record.source_vertices += part.record.source_vertices;
+  whole.record.group_count += part.record.group_count;
+  whole.record.grid_collapsed += part.record.grid_collapsed;
+  whole.record.diagonal = std::max(whole.record.diagonal, part.record.diagonal);
+  whole.record.level0_deviation = std::max(whole.record.level0_deviation, part.record.level0_deviation);
+  for (auto count : {&MeshInfo::roots, &MeshInfo::root_triangles, &MeshInfo::clusters, &MeshInfo::triangles,
+                     &MeshInfo::vertices, &MeshInfo::stuck_groups}) {
+    whole.info.*count += part.info.*count;
+  }
+  std::vector<LevelInfo>& levels = whole.info.levels;
+  const std::size_t common = std::min(levels.size(), part.info.levels.size());
+  for (std::size_t k = 0; k < common; ++k) add_level(part.info.levels[k], levels[k]);
+  levels.insert(levels.end(), part.info.levels.begin() + static_cast<std::ptrdiff_t>(common), part.info.levels.end());
+}
+
+std::vector<ComparedMesh> compared_meshes(const Described& side, const Described& other) {
+  std::set<std::string_view> parts;  // that the other side has too
+  for (std::size_t m = 0; m < other.info.meshes.size(); ++m) {
+    if (other.info.meshes[m].part_of) parts.insert(other.asset.string(other.asset.meshes()[m].name));
+  }
+  const auto meshes = side.asset.meshes();
+  std::vector<ComparedMesh> out;
+  std::vector<std::size_t> place(meshes.size());  // a part comes behind its mesh
+  for (std::size_t m = 0; m < meshes.size(); ++m) {
+    place[m] = out.size();
+    const MeshInfo& info = side.info.meshes[m];
+    ComparedMesh mesh{static_cast<std::uint32_t>(m), side.asset.string(meshes[m].name), meshes[m], info};
+    if (info.part_of && !parts.contains(mesh.name)) {
+      add_part(mesh, out[place[*info.part_of]]);
+    } else {
+      out.push_back(std::move(mesh));
+    }
+  }
+  return out;
+}
+
+MeshChange compare_mesh(const ComparedMesh& before, const ComparedMesh& after) {
+  const auto& [old_index, old_name, a, info_a] = before;
+  const auto& [new_index, new_name, b, info_b] = after;
   MeshChange out;
-  out.mesh = pair;
+  out.mesh = {std::string(old_name), std::string(new_name), old_index, new_index};
   out.tier = {a.error_tier, b.error_tier};
   out.changes = {count("source_triangles", a.source_triangles, b.source_triangles),
                  count("source_vertices", a.source_vertices, b.source_vertices),
@@ -170,12 +228,18 @@ std::vector<const Record*> pointers_to(std::span<const Record> records) {
 }
 
 void compare_meshes(const Described& a, const Described& b, AssetComparison& out) {
-  const auto before = names_of(a.asset, pointers_to(a.asset.meshes()));
-  const auto after = names_of(b.asset, pointers_to(b.asset.meshes()));
-  const Matches matches = match_by_name(before, after);
-  for (const EntryPair& pair : entry_pairs(before, after, matches)) out.meshes.push_back(compare_mesh(a, b, pair));
-  out.meshes_removed = one_sided(before, matches.removed);
-  out.meshes_added = one_sided(after, matches.added);
+  const std::vector<ComparedMesh> before = compared_meshes(a, b), after = compared_meshes(b, a);
+  const auto names = [](const std::vector<ComparedMesh>& meshes) {
+    std::vector<std::string_view> of_meshes;
+    for (const ComparedMesh& mesh : meshes) of_meshes.push_back(mesh.name);
+    return of_meshes;
+  };
+  const Matches matches = match_by_name(names(before), names(after));
+  for (const auto& [i, j] : matches.pairs) out.meshes.push_back(compare_mesh(before[i], after[j]));
+  for (const std::size_t i : matches.removed) {
+    out.meshes_removed.push_back({std::string(before[i].name), before[i].index});
+  }
+  for (const std::size_t j : matches.added) out.meshes_added.push_back({std::string(after[j].name), after[j].index});
 }
 
 /// What the asset's own records say of a material; which texture is which index may change though the picture stays.

@@ -16,6 +16,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "app/export/cut_geometry.h"
 #include "app/export/float_positions.h"
@@ -23,6 +24,7 @@
 #include "app/export/gltf_document.h"
 #include "app/export/sniff.h"
 #include "app/export/write_primitive.h"
+#include "app/report/read_meta.h"
 #include "base/guarded.h"
 #include "base/hash.h"
 #include "base/json_handle.h"
@@ -44,9 +46,36 @@ struct ExportedMesh {
   std::vector<std::uint32_t> levels;  ///< indices in the glTF, the finest first; empty without primitives
   Vec3d translation{0.0};             ///< of a node to put around it
   std::string name;
-  std::span<const double> screen_coverage;
+  std::vector<double> screen_coverage;
   [[nodiscard]] bool is_translated() const { return translation != Vec3d(0.0); }
 };
+
+/// A mesh of the asset in an exported one: the mesh itself, or a part of it that the asset has as a mesh of its own.
+struct Member {
+  const format::MeshRecord& record;
+  const LodChain& chain;
+  std::vector<std::vector<CutPrimitive>> levels = {};
+
+  [[nodiscard]] Vec3d origin() const { return {record.origin[0], record.origin[1], record.origin[2]}; }
+};
+
+/// A level is meant until the next one of every member is good enough, in shares of the largest one's size.
+std::vector<double> join_coverage(std::span<const Member> members, std::size_t level_count) {
+  if (members.size() == 1) return members[0].chain.screen_coverage;
+  double diagonal = 0.0;
+  for (const Member& member : members) diagonal = std::max(diagonal, member.record.diagonal);
+  std::vector<double> joined(level_count, 1.0);
+  for (const auto& [record, chain, levels] : members) {
+    if (chain.screen_coverage.empty()) return {};
+    const double scale = record.diagonal > 0.0 ? diagonal / record.diagonal : 1.0;
+    for (std::size_t k = 0; k + 1 < levels.size(); ++k) {
+      joined[k] = std::min(joined[k], scale * chain.screen_coverage[k]);
+    }
+  }
+  joined.back() = 0.0;
+  for (std::size_t k = 1; k < level_count; ++k) joined[k] = std::min(joined[k], joined[k - 1]);
+  return joined;
+}
 
 /// Whether each of these members is an array, where it is there.
 Status check_arrays(const Json& object, std::initializer_list<const char*> keys) {
@@ -73,9 +102,9 @@ class Exporter {
   Result<std::vector<std::uint8_t>> run();
 
  private:
-  Status add_mesh(MeshId mesh);
-  Result<Json> make_mesh(const format::MeshRecord& record, const Json* source, std::span<const CutPrimitive> primitives,
-                         const Vec3d& baked);
+  Status add_mesh(std::size_t mesh, std::span<const MeshId> member_ids);
+  Status add_primitives(const Member& member, const Json* source, std::span<const CutPrimitive> primitives,
+                        const Vec3d& translation, Json& json);
   Status carry_buffers();
   Status carry_images();
   void move_texture_sources();
@@ -91,6 +120,7 @@ class Exporter {
 
   const run::Asset& asset_;
   std::span<const LodChain> chains_;
+  std::vector<std::size_t> origins_ = origins_of_meshes(read_meta(asset_.meta_json()), asset_.meshes().size());
   Json document_;
   Json meshes_ = Json::array();
   std::vector<ExportedMesh> exported_;
@@ -243,47 +273,55 @@ std::map<Json, const Json*> extensions_by_material(const Json* mesh) {
   return out;
 }
 
-Result<Json> Exporter::make_mesh(const format::MeshRecord& record, const Json* source,
-                                 std::span<const CutPrimitive> primitives, const Vec3d& baked) {
-  Json json = Json::object();
-  json["primitives"] = Json::array();
+Status Exporter::add_primitives(const Member& member, const Json* source, std::span<const CutPrimitive> primitives,
+                                const Vec3d& translation, Json& json) {
   const auto extensions = extensions_by_material(source);
   for (const CutPrimitive& primitive : primitives) {
-    auto made = primitives_.write(record, primitive, baked);
+    auto made = primitives_.write(member.record, primitive, member.origin() - translation);
     if (!made) return made.error();
     const auto known = extensions.find(made->value("material", Json()));
     if (known != extensions.end()) (*made)["extensions"] = *known->second;
     json["primitives"].push_back(std::move(*made));
   }
-  return json;
+  return Ok{};
 }
 
-Status Exporter::add_mesh(MeshId mesh) {
-  const format::MeshRecord& record = asset_.meshes()[mesh.value];
-  const LodChain& chain = chains_[mesh.value];
+/// The source's mesh with this index, of what the asset has of it. A level that a member lacks is its coarsest.
+Status Exporter::add_mesh(std::size_t mesh, std::span<const MeshId> member_ids) {
   ExportedMesh& exported = exported_.emplace_back();
-  std::vector<std::vector<CutPrimitive>> levels;
-  for (const std::vector<ClusterId>& cut : chain.cuts) {
-    auto primitives = gather_cut(asset_, mesh, cut);
-    if (!primitives) return primitives.error();
-    if (!primitives->empty()) levels.push_back(std::move(*primitives));
+  std::vector<Member> members;
+  std::size_t level_count = 0;
+  for (const MeshId id : member_ids) {
+    Member member{asset_.meshes()[id.value], chains_[id.value]};
+    for (const std::vector<ClusterId>& cut : member.chain.cuts) {
+      auto primitives = gather_cut(asset_, id, cut);
+      if (!primitives) return primitives.error();
+      if (!primitives->empty()) member.levels.push_back(std::move(*primitives));
+    }
+    if (member.levels.empty()) continue;
+    if (!exported.is_translated()) {
+      exported.translation = member.origin() - choose_origin(member.record, member.levels);
+    }
+    level_count = std::max(level_count, member.levels.size());
+    members.push_back(std::move(member));
   }
-  if (levels.empty()) return Ok{};
-  const Vec3d baked = choose_origin(record, levels);
-  exported.translation = Vec3d(record.origin[0], record.origin[1], record.origin[2]) - baked;
-  exported.screen_coverage = chain.screen_coverage;
-  const Json* source = find_element(document_, "meshes", mesh.value);
+  if (members.empty()) return Ok{};
+  exported.screen_coverage = join_coverage(members, level_count);
+  const Json* source = find_element(document_, "meshes", mesh);
   if (source != nullptr && source->is_object() && source->contains("name")) exported.name = source->at("name");
-  if (exported.name.empty()) exported.name = asset_.string(record.name);
-  for (std::size_t k = 0; k < levels.size(); ++k) {
-    auto json = make_mesh(record, source, levels[k], baked);
-    if (!json) return json.error();
+  if (exported.name.empty()) exported.name = asset_.string(asset_.meshes()[mesh].name);
+  for (std::size_t k = 0; k < level_count; ++k) {
+    Json json = {{"primitives", Json::array()}};
+    for (const Member& member : members) {
+      const auto& level = member.levels[std::min(k, member.levels.size() - 1)];
+      const Status added = add_primitives(member, source, level, exported.translation, json);
+      if (!added) return added.error();
+    }
     const std::string name = k == 0 || exported.name.empty() ? exported.name : level_name(exported.name, k);
-    if (!name.empty()) (*json)["name"] = name;
-    if (source != nullptr && source->is_object() && source->contains("extras"))
-      (*json)["extras"] = source->at("extras");
+    if (!name.empty()) json["name"] = name;
+    if (source != nullptr && source->is_object() && source->contains("extras")) json["extras"] = source->at("extras");
     exported.levels.push_back(static_cast<std::uint32_t>(meshes_.size()));
-    meshes_.push_back(std::move(*json));
+    meshes_.push_back(std::move(json));
   }
   return Ok{};
 }
@@ -293,6 +331,7 @@ Status Exporter::make_instance_nodes() {
   Json nodes = Json::array();
   Json roots = Json::array();
   for (const format::InstanceRecord& instance : asset_.instances()) {
+    if (origins_[instance.mesh] != instance.mesh) continue;
     Json node = {{"mesh", instance.mesh}};
     if (const auto name = asset_.string(instance.name); !name.empty()) node["name"] = std::string(name);
     Json matrix = Json::array();
@@ -380,7 +419,7 @@ Status Exporter::attach_meshes() {
   Json& nodes = array_of(document_, "nodes");
   for (const format::InstanceRecord& instance : asset_.instances()) {
     if (instance.node < nodes.size() && !nodes[instance.node].contains("mesh")) {
-      nodes[instance.node]["mesh"] = instance.mesh;
+      nodes[instance.node]["mesh"] = origins_[instance.mesh];
     }
   }
   const std::size_t node_count = nodes.size();
@@ -433,8 +472,10 @@ Result<std::vector<std::uint8_t>> Exporter::run() {
   move_texture_sources();
   if (const Status s = complete_materials(); !s) return s.error();
   exported_.reserve(asset_.meshes().size());
-  for (std::size_t m = 0; m < asset_.meshes().size(); ++m) {
-    if (auto status = add_mesh(MeshId(m)); !status) return status.error();
+  std::vector<std::vector<MeshId>> members(origins_.size());
+  for (std::size_t m = 0; m < origins_.size(); ++m) members[origins_[m]].emplace_back(m);
+  for (std::size_t m = 0; m < members.size(); ++m) {
+    if (auto status = add_mesh(m, members[m]); !status) return status.error();
   }
   if (const Status s = attach_meshes(); !s) return s.error();
   finish_document();

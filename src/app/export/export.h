@@ -13,9 +13,10 @@
 
 namespace meshlode::app {
 
-/// One cut per mesh of the asset (an empty cut leaves the mesh without primitives and its nodes without mesh).
-/// Positions that are one grid point become one vertex wherever their attributes agree. Errors: kInvalid for a page or
-/// a blob that is not what was written.
+/// One cut per mesh of the asset, which may have several of one mesh of the source: parts of it, all of them one mesh
+/// in the GLB (an empty cut leaves the mesh without primitives and its nodes without mesh). Positions that are one grid
+/// point become one vertex wherever their attributes agree. Errors: kInvalid for a page or a blob that is not what was
+/// written.
 [[nodiscard]] Result<std::vector<std::uint8_t>> export_glb(const run::Asset& asset,
                                                            std::span<const std::vector<ClusterId>> cut_per_mesh);
 

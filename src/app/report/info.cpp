@@ -96,9 +96,11 @@ AssetInfo describe_asset(const run::Asset& asset) {
   for (const format::BlobRecord& blob : asset.blobs()) {
     if (blob.kind == format::BlobKind::kImage) info.image_bytes += blob.bytes;
   }
+  const std::vector<std::size_t> origins = origins_of_meshes(info.meta, asset.meshes().size());
   for (std::uint32_t m = 0; m < asset.meshes().size(); ++m) {
     const format::MeshRecord& mesh = asset.meshes()[m];
     MeshInfo one = describe_mesh(asset, m, info.cluster_cap);
+    if (origins[m] != m) one.part_of = origins[m];
     info.source_triangles += mesh.source_triangles;
     info.source_vertices += mesh.source_vertices;
     info.stored_triangles += one.triangles;

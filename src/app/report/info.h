@@ -3,6 +3,7 @@
 // The JSON's keys (docs/schemas/info.schema.json) and the columns of CSV (docs/info.md) are a promise.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -35,6 +36,7 @@ struct StuckGroupInfo {
 };
 
 struct MeshInfo {
+  std::optional<std::size_t> part_of;           ///< the mesh whose pieces it has
   std::uint64_t roots = 0, root_triangles = 0;  ///< a root is a cluster that nothing coarser replaces
   std::uint64_t clusters = 0, triangles = 0, vertices = 0;
   std::vector<StuckGroupInfo> stuck;  ///< those of a locked border among them

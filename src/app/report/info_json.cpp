@@ -158,6 +158,7 @@ void write_mesh(JsonWriter& w, const run::Asset& asset, std::uint32_t id, const 
   const format::MeshRecord& mesh = asset.meshes()[id];
   w.begin_object();
   w.field("name", asset.string(mesh.name));
+  if (info.part_of) w.field("part_of", *info.part_of);
   w.field("source_triangles", mesh.source_triangles);
   w.field("source_vertices", mesh.source_vertices);
   w.field("stored_triangles", info.triangles);

@@ -3,6 +3,7 @@
 #include "app/report/read_meta.h"
 
 #include <limits>
+#include <numeric>
 #include <optional>
 
 #include <nlohmann/json.hpp>
@@ -89,6 +90,12 @@ MetaInfo read_meta(std::string_view meta_json) {
       if (cap >= 1 && cap <= 256) meta.cluster_triangles = static_cast<std::uint32_t>(cap);
     }
   }
+  if (const Json* parts = child(json, "parts", Json::value_t::array)) {
+    for (const Json& entry : *parts) {
+      const auto mesh = TreeHandle(entry).find("mesh").index(), of = TreeHandle(entry).find("of").index();
+      if (mesh && of) meta.parts.push_back({*mesh, *of});
+    }
+  }
   if (const Json* plan = child(json, "plan", Json::value_t::array)) {
     meta.plan = dump(*plan);
     for (const Json& entry : *plan) {
@@ -101,6 +108,15 @@ MetaInfo read_meta(std::string_view meta_json) {
     for (const Json& entry : *left_out) meta.left_outs.push_back({string_at(entry, "what"), string_at(entry, "why")});
   }
   return meta;
+}
+
+std::vector<std::size_t> origins_of_meshes(const MetaInfo& meta, std::size_t mesh_count) {
+  std::vector<std::size_t> origins(mesh_count);
+  std::iota(origins.begin(), origins.end(), std::size_t{0});
+  for (const auto& [mesh, of] : meta.parts) {
+    if (mesh < mesh_count && of < mesh && origins[of] == of) origins[mesh] = of;
+  }
+  return origins;
 }
 
 std::vector<TextureInfo> read_textures(std::string_view scene_json) {

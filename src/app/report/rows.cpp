@@ -105,6 +105,7 @@ std::vector<std::string> mesh_lines(const run::Asset& asset, std::uint32_t id, c
   append_format(lines[1], "%llu root(s) with %llu triangles, %llu stuck group(s), level 0 deviates by %.3g",
                 static_cast<unsigned long long>(info.roots), static_cast<unsigned long long>(info.root_triangles),
                 static_cast<unsigned long long>(info.stuck_groups), static_cast<double>(mesh.level0_deviation));
+  if (info.part_of) lines.push_back("pieces of mesh " + std::to_string(*info.part_of));
   if (!asset.promises().empty()) {
     const format::PromiseMeshRecord& promise = asset.promises()[id];
     const bool has_appearance = (promise.promises & format::kPromisesAppearance) != 0;

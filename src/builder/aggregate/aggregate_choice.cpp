@@ -5,90 +5,23 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <numeric>
 #include <utility>
 #include <vector>
 
 #include "base/disjoint_sets.h"
 #include "base/glob.h"
+#include "scene/parts/pieces.h"
 
 namespace meshlode::builder {
 
 namespace {
 
+using scene::Piece, scene::Pieces;
+
 constexpr std::uint64_t kFewestPieces = 256;
 constexpr std::uint32_t kSmallPiece = 32, kLargestPiece = 512;  // triangles
 constexpr double kSmallShare = 0.98;                            // of the triangles are in small pieces
 constexpr double kWidestPiece = 0.2;                            // of the mesh's diagonal: the middle one of all pieces
-
-struct Piece {
-  std::uint64_t triangles = 0;
-  Vec3d low{0.0}, high{0.0};
-  std::uint32_t material = 0;  ///< of its first triangle
-};
-
-bool is_before(const Vec3d& a, const Vec3d& b) {
-  if (a.x != b.x) return a.x < b.x;
-  if (a.y != b.y) return a.y < b.y;
-  return a.z < b.z;
-}
-
-/// Parts of the mesh that share no exact position.
-struct Pieces {
-  std::vector<Piece> pieces;
-  std::vector<std::uint32_t> of_triangle;  ///< by triangle, primitive by primitive
-
-  explicit Pieces(const scene::SourceMesh& mesh) {
-    std::vector<Vec3d> positions;
-    for (const scene::Primitive& primitive : mesh.primitives) {
-      positions.insert(positions.end(), primitive.positions.begin(), primitive.positions.end());
-    }
-    std::vector<std::uint32_t> order(positions.size());
-    std::iota(order.begin(), order.end(), 0U);
-    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-      if (is_before(positions[a], positions[b])) return true;
-      return !is_before(positions[b], positions[a]) && a < b;
-    });
-    DisjointSets sets(positions.size());
-    for (std::size_t i = 1; i < order.size(); ++i) {
-      if (positions[order[i - 1]] == positions[order[i]]) sets.join(order[i - 1], order[i]);
-    }
-    for_each_triangle(mesh, [&](const std::array<std::uint32_t, 3>& t, std::uint32_t) {
-      sets.join(t[0], t[1]);
-      sets.join(t[1], t[2]);
-    });
-    std::vector<std::uint32_t> piece_of(positions.size(), kNoId);
-    for_each_triangle(mesh, [&](const std::array<std::uint32_t, 3>& t, std::uint32_t material) {
-      std::uint32_t& number = piece_of[sets.find(t[0])];
-      if (number == kNoId) {
-        number = static_cast<std::uint32_t>(pieces.size());
-        pieces.push_back({0, positions[t[0]], positions[t[0]], material});
-      }
-      of_triangle.push_back(number);
-      Piece& piece = pieces[number];
-      ++piece.triangles;
-      for (const std::uint32_t v : t) {
-        piece.low = glm::min(piece.low, positions[v]);
-        piece.high = glm::max(piece.high, positions[v]);
-      }
-    });
-  }
-
-  /// Calls visit(corners among all primitives' vertices, material).
-  template <class Visit>
-  static void for_each_triangle(const scene::SourceMesh& mesh, const Visit& visit) {
-    std::size_t base = 0;
-    for (const scene::Primitive& primitive : mesh.primitives) {
-      const std::vector<std::uint32_t>& indices = primitive.indices;
-      for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
-        std::array<std::uint32_t, 3> t{};
-        for (std::size_t k = 0; k < 3; ++k) t[k] = static_cast<std::uint32_t>(base + indices[i + k]);
-        visit(t, primitive.material.value);
-      }
-      base += primitive.positions.size();
-    }
-  }
-};
 
 std::uint32_t count_materials(const scene::SourceMesh& mesh) {
   std::uint32_t count = 0;
@@ -138,7 +71,7 @@ std::vector<std::uint32_t> find_parts(const scene::SourceMesh& mesh, const Piece
   // A part has all materials that some piece has together.
   DisjointSets parts(materials);
   std::size_t next = 0;
-  Pieces::for_each_triangle(mesh, [&](const auto&, std::uint32_t material) {
+  scene::for_each_triangle(mesh, [&](const auto&, std::uint32_t material) {
     parts.join(all.pieces[all.of_triangle[next++]].material, material);
   });
   std::vector<Look> whole(materials), small(materials);  // at what stands for the part
@@ -162,27 +95,21 @@ std::vector<std::uint32_t> find_parts(const scene::SourceMesh& mesh, const Piece
 
 /// The decision that `most` comes to.
 AggregateDecision decide_by(const scene::SourceMesh& mesh, const Pieces& all, std::vector<std::uint32_t> most,
-                            std::span<const scene::SceneMaterial> materials, bool may_be_part,
-                            const std::string& otherwise) {
-  std::vector<std::uint8_t> is_in(all.pieces.size(), 1);
-  std::size_t next = 0;
-  Pieces::for_each_triangle(mesh, [&](const auto&, std::uint32_t material) {
-    const std::uint32_t piece = all.of_triangle[next++];
-    if (all.pieces[piece].triangles > most[material]) is_in[piece] = 0;
-  });
+                            std::span<const scene::SceneMaterial> materials, const std::string& otherwise) {
+  const std::vector<std::uint8_t> is_in = all.find_small(mesh, most);
   std::uint64_t count = 0, largest = 0;
-  std::vector<std::uint8_t> is_of(most.size(), 0);
   for (std::size_t p = 0; p < all.pieces.size(); ++p) {
     if (is_in[p] == 0) continue;
     ++count;
     largest = std::max(largest, all.pieces[p].triangles);
-    is_of[all.pieces[p].material] = 1;
   }
   if (count == 0) return {false, otherwise, {}};
   if (count == all.pieces.size()) return {true, describe(count, largest), {}};
-  if (!may_be_part) {
-    return {false, describe(count, largest) + ": a part, and what is promised of texels is of whole meshes", {}};
-  }
+  std::vector<std::uint8_t> is_of(most.size(), 0);  // some piece has a triangle of it
+  std::size_t next = 0;
+  scene::for_each_triangle(mesh, [&](const auto&, std::uint32_t material) {
+    if (is_in[all.of_triangle[next++]] != 0) is_of[material] = 1;
+  });
   std::string names;
   for (std::size_t m = 0; m < is_of.size(); ++m) {
     if (is_of[m] == 0) most[m] = 0;
@@ -190,8 +117,8 @@ AggregateDecision decide_by(const scene::SourceMesh& mesh, const Pieces& all, st
     names += (names.empty() ? " of '" : ", '") + materials[m].name + "'";
   }
   return {true,
-          describe(count, largest) + names + "; the other " + std::to_string(all.pieces.size() - count) +
-              " go by distances",
+          describe(count, largest) + names + ", a mesh of their own; the other " +
+              std::to_string(all.pieces.size() - count) + " go by distances",
           std::move(most)};
 }
 
@@ -249,12 +176,11 @@ AggregateDecision decide_by_pieces(const scene::SourceMesh& mesh, const Aggregat
   Look whole = look_at(all.pieces);
   const std::string what = describe(whole.count, whole.largest) + ": ";
   if (question.choice != AggregateChoice::kAuto) {
-    return decide_by(mesh, all, std::move(most), question.materials, question.may_be_part,
-                     what + "too many for one of many cards");
+    return decide_by(mesh, all, std::move(most), question.materials, what + "too many for one of many cards");
   }
   const std::string fault = whole.fault();
   if (fault.empty()) return {true, describe(whole.count, whole.largest), {}};
-  return decide_by(mesh, all, find_parts(mesh, all, materials), question.materials, question.may_be_part, what + fault);
+  return decide_by(mesh, all, find_parts(mesh, all, materials), question.materials, what + fault);
 }
 
 }  // namespace
@@ -268,16 +194,12 @@ AggregateDecision decide_aggregate(const scene::SourceMesh& mesh, const Aggregat
 void leave_out(const scene::SourceMesh& mesh, std::span<const std::uint8_t> is_out, const std::string& reason,
                AggregateDecision& decision) {
   if (!decision.is_aggregate) return;
-  const bool is_whole = decision.most_triangles.empty();
-  bool is_any_left = false, is_any_out = false;
-  for (const scene::Primitive& primitive : mesh.primitives) {
-    const std::uint32_t m = primitive.material.value;
-    is_any_out = is_any_out || is_out[m] != 0;
-    if (is_whole) continue;
-    if (is_out[m] != 0) decision.most_triangles[m] = 0;
-    is_any_left = is_any_left || decision.most_triangles[m] > 0;
-  }
-  if (is_whole ? is_any_out : !is_any_left) decision = {false, reason, {}};
+  const auto is_of_any_out = [&](const scene::Primitive& primitive) { return is_out[primitive.material.value] != 0; };
+  if (std::none_of(mesh.primitives.begin(), mesh.primitives.end(), is_of_any_out)) return;
+  std::vector<std::uint32_t>& most = decision.most_triangles;
+  for (std::size_t m = 0; m < most.size(); ++m) most[m] = is_out[m] != 0 ? 0 : most[m];
+  const std::vector<std::uint8_t> is_in = Pieces(mesh).find_small(mesh, most);  // of all of a mesh none
+  if (std::find(is_in.begin(), is_in.end(), 1) == is_in.end()) decision = {false, reason, {}};
 }
 
 void add_materials(const scene::SourceMesh& mesh, const AggregateDecision& decision,

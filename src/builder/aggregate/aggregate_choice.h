@@ -31,7 +31,6 @@ struct AggregateQuestion {
   std::string_view names = {};  ///< kNamed: globs of meshes and materials, comma by comma
   bool keep_topology = false;
   bool lock_borders = false;
-  bool may_be_part = true;                               ///< else all of a mesh is an aggregate or nothing
   std::span<const scene::SceneMaterial> materials = {};  ///< of the scene; none where nobody asks for them
 };
 

@@ -148,8 +148,8 @@ struct Node {
 
 class AggregateDag {
  public:
-  AggregateDag(PreparedMesh& mesh, const DagOptions& options, ThinMesh thin, const PlaceSet& others)
-      : mesh_(mesh), options_(options), thin_(std::move(thin)), others_(others), pool_(mesh, levels_of(thin_)) {}
+  AggregateDag(PreparedMesh& mesh, const DagOptions& options, ThinMesh thin)
+      : mesh_(mesh), options_(options), thin_(std::move(thin)), pool_(mesh, levels_of(thin_)) {}
 
   Result<LodDag> run() {
     add_level0();
@@ -233,9 +233,7 @@ class AggregateDag {
     const SimplifyResult result = on_grid(thin, mesh_, [&](const Vec3i& place) {
       const std::uint32_t id = pool_.find_position(place);
       // What stands where its own pieces stood meets nobody.
-      const bool is_own =
-          id == kNoId || (leaf_of_position_[id] >= thin.first_leaf && leaf_of_position_[id] < thin.end_leaf);
-      return !is_own || others_.contains(place);
+      return id != kNoId && (leaf_of_position_[id] < thin.first_leaf || leaf_of_position_[id] >= thin.end_leaf);
     });
     if (result.triangles.empty() || static_cast<double>(result.triangles.size()) > kStuckRatio * children.triangles)
       return false;
@@ -325,7 +323,6 @@ class AggregateDag {
   PreparedMesh& mesh_;
   const DagOptions& options_;
   ThinMesh thin_;
-  const PlaceSet& others_;
   BuildPool pool_;
   std::vector<std::uint32_t> leaf_of_position_;  ///< of the pool: a leaf of the group that has it; kNoId: of two
   std::vector<Node> nodes_;
@@ -347,10 +344,10 @@ std::uint32_t leaf_triangles(const DagOptions& options) {
 }  // namespace
 
 Result<LodDag> build_aggregate_dag_and_free(PreparedMesh& mesh, std::span<const SourceMaterial> materials,
-                                            const DagOptions& options, const PlaceSet& others) {
+                                            const DagOptions& options) {
   if (mesh.triangles.empty()) return LodDag{};
   ThinMesh thin = thin_mesh(mesh, materials, {.leaf_triangles = leaf_triangles(options)});
-  return AggregateDag(mesh, options, std::move(thin), others).run();
+  return AggregateDag(mesh, options, std::move(thin)).run();
 }
 
 }  // namespace meshlode::builder

@@ -8,14 +8,12 @@
 
 #include "builder/aggregate/pieces.h"
 #include "builder/dag/build_dag.h"
-#include "builder/simplify/kept_topology.h"
 
 namespace meshlode::builder {
 
 /// Every group that is not terminal is an aggregate (DagGroup::is_aggregate). As build_dag_and_free() of the mesh.
-/// `others`: where other parts of the mesh have vertices, in grid units: no edge comes to lie between two of them.
 /// Errors: kBuildFailed when cancelled.
 [[nodiscard]] Result<LodDag> build_aggregate_dag_and_free(PreparedMesh& mesh, std::span<const SourceMaterial> materials,
-                                                          const DagOptions& options, const PlaceSet& others = {});
+                                                          const DagOptions& options);
 
 }  // namespace meshlode::builder

@@ -12,6 +12,7 @@
 #include "judge/gpu/compare_frame.h"
 #include "judge/gpu/judge_picture.h"
 #include "judge/metrics/coverage.h"
+#include "judge/verify/source_parts.h"
 
 namespace meshlode::judge {
 
@@ -322,8 +323,10 @@ void describe_promises(const Promise& promise, const GpuVerifyReport& report, do
 
 }  // namespace
 
-Result<GpuVerifyReport> verify_on_gpu(const run::Asset& asset, const scene::Scene& source,
+Result<GpuVerifyReport> verify_on_gpu(const run::Asset& asset, const scene::Scene& whole,
                                       const GpuVerifyOptions& options) {
+  const std::optional<scene::Scene> split = split_source(asset, whole);
+  const scene::Scene& source = split ? *split : whole;
   auto device = draw::Device::open(options.device);
   if (!device) return device.error();
   draw::ImageBudget images(options.max_decoded);

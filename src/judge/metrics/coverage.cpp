@@ -358,15 +358,14 @@ bool has_aggregates(const run::Asset& asset, MeshId mesh) {
                      [](const format::GroupRecord& group) { return (group.flags & format::kGroupAggregate) != 0; });
 }
 
-std::vector<ClusterId> clusters_of_part(const run::Asset& asset, std::span<const ClusterId> clusters, Part part) {
+std::vector<ClusterId> clusters_of_aggregates(const run::Asset& asset, std::span<const ClusterId> clusters) {
   const auto is_aggregate = [&](std::uint32_t group) {
     return group != format::kNone && (asset.groups()[group].flags & format::kGroupAggregate) != 0;
   };
   std::vector<ClusterId> out;
   for (const ClusterId id : clusters) {
     const format::ClusterRecord& cluster = asset.clusters()[id.value];
-    const bool is_in = is_aggregate(cluster.own_group) || is_aggregate(cluster.coarser_group);
-    if (is_in == (part == Part::kAggregate)) out.push_back(id);
+    if (is_aggregate(cluster.own_group) || is_aggregate(cluster.coarser_group)) out.push_back(id);
   }
   return out;
 }

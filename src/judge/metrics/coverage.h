@@ -55,9 +55,8 @@ struct CoverageDrift {
 /// Whether some group of the mesh is an aggregate's.
 [[nodiscard]] bool has_aggregates(const run::Asset& asset, MeshId mesh);
 
-/// Of clusters those that an aggregate's group has or made, or the others: a tree's leaves, or its trunk.
-enum class Part : std::uint8_t { kAggregate, kOther };
-[[nodiscard]] std::vector<ClusterId> clusters_of_part(const run::Asset& asset, std::span<const ClusterId> clusters,
-                                                      Part part);
+/// Of clusters those that an aggregate's group has or made: all of a mesh, but for assets of before parts were meshes.
+[[nodiscard]] std::vector<ClusterId> clusters_of_aggregates(const run::Asset& asset,
+                                                            std::span<const ClusterId> clusters);
 
 }  // namespace meshlode::judge

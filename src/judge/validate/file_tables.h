@@ -27,6 +27,11 @@ struct MetaFacts {
     std::optional<double> position_error, normal_error, uv_error;  ///< uv_error in uv_error_unit
     bool locks_borders = false;
   };
+  /// A mesh that has pieces of another: by material, how many triangles such a piece has at most.
+  struct Part {
+    std::uint64_t mesh = 0, of = 0;
+    std::map<std::uint64_t, std::uint32_t> most_triangles;
+  };
   std::string source_hash;
   std::optional<std::uint64_t> cluster_triangles, cluster_vertices;  ///< settings
   std::optional<double> error_margin;                                ///< settings
@@ -34,6 +39,7 @@ struct MetaFacts {
   OfMesh whole;                                                      ///< settings
   std::vector<OfMesh> apart;                                         ///< settings/mesh_settings …
   std::map<std::uint64_t, std::size_t> apart_of_mesh;                ///< … of these meshes
+  std::vector<Part> parts;                                           ///< as many as can be read
 
   [[nodiscard]] const OfMesh& of_mesh(std::uint64_t mesh) const {
     const auto found = apart_of_mesh.find(mesh);

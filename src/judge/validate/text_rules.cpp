@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The asset's JSON texts; the one file of this room that sees nlohmann-json.
+#include <algorithm>
 #include <string>
 
 #include <nlohmann/json.hpp>
@@ -73,17 +74,33 @@ MetaFacts::OfMesh mesh_facts_of(const nlohmann::json& settings, const MetaFacts:
   return facts;
 }
 
+std::optional<std::uint64_t> number_at(const nlohmann::json& object, const char* key) {
+  const nlohmann::json found = value_at(object, key);
+  return found.is_number_unsigned() ? std::optional(found.get<std::uint64_t>()) : std::nullopt;
+}
+
+std::vector<MetaFacts::Part> parts_of(const nlohmann::json& meta) {
+  std::vector<MetaFacts::Part> parts;
+  for (const nlohmann::json& entry : value_at(meta, "parts")) {
+    const auto mesh = number_at(entry, "mesh"), of = number_at(entry, "of");
+    if (!mesh || !of) return {};
+    MetaFacts::Part& part = parts.emplace_back(MetaFacts::Part{*mesh, *of, {}});
+    for (const nlohmann::json& pieces : value_at(entry, "pieces")) {
+      const auto material = number_at(pieces, "material"), triangles = number_at(pieces, "triangles");
+      if (!material || !triangles) return {};
+      part.most_triangles[*material] = static_cast<std::uint32_t>(std::min<std::uint64_t>(*triangles, format::kNone));
+    }
+  }
+  return parts;
+}
+
 MetaFacts facts_of(const nlohmann::json& meta) {
   const nlohmann::json settings = value_at(meta, "settings");
-  const auto number = [&](const char* key) {
-    const nlohmann::json found = value_at(settings, key);
-    return found.is_number_unsigned() ? std::optional(found.get<std::uint64_t>()) : std::nullopt;
-  };
   MetaFacts facts;
   facts.source_hash = text_at(value_at(meta, "source"), "hash");
   facts.whole = mesh_facts_of(settings, {});
-  facts.cluster_triangles = number("cluster_triangles");
-  facts.cluster_vertices = number("cluster_vertices");
+  facts.cluster_triangles = number_at(settings, "cluster_triangles");
+  facts.cluster_vertices = number_at(settings, "cluster_vertices");
   facts.error_margin = real_at(settings, "error_margin");
   facts.keeps_topology = value_at(settings, "keep_topology") == true;
   for (const nlohmann::json& apart : value_at(settings, "mesh_settings")) {
@@ -92,6 +109,7 @@ MetaFacts facts_of(const nlohmann::json& meta) {
     }
     facts.apart.push_back(mesh_facts_of(apart, facts.whole));
   }
+  facts.parts = parts_of(meta);
   return facts;
 }
 
@@ -116,6 +134,7 @@ void check_texts(FileTables& file, RuleLog& log) {
     };
     has("generator", nlohmann::json::value_t::string);
     has("settings", nlohmann::json::value_t::object);
+    has("parts", nlohmann::json::value_t::array);
     has("plan", nlohmann::json::value_t::array);
     has("left_out", nlohmann::json::value_t::array);
     if (has("source", nlohmann::json::value_t::object)) {

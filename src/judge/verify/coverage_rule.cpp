@@ -29,7 +29,7 @@ CoverageTotals check_coverage(const run::Asset& asset, std::uint32_t sizes, Rule
   const draw::AlphaMasks masks = draw::load_alpha_masks(asset);
   const auto triangles_at = [&](std::uint32_t mesh, double size) {
     const std::vector<ClusterId> drawn = run::select_uniform(asset, MeshId(mesh), size).clusters;
-    return covering_triangles(asset, masks, MeshId(mesh), clusters_of_part(asset, drawn, Part::kAggregate));
+    return covering_triangles(asset, masks, MeshId(mesh), clusters_of_aggregates(asset, drawn));
   };
   for (std::uint32_t m = 0; m < asset.meshes().size(); ++m) {
     if (!has_aggregates(asset, MeshId(m))) continue;

@@ -22,7 +22,6 @@ std::vector<double> spread_thresholds(std::span<const format::GroupRecord> group
   bool any_zero = false;
   std::vector<double> thresholds;
   for (const format::GroupRecord& group : groups) {
-    if ((group.flags & format::kGroupAggregate) != 0) continue;  // a pixel's size, no distance
     if (count == kAllCuts && group.error < format::kInfiniteError) thresholds.push_back(group.error);
     if (group.error == 0.0F) any_zero = true;
     if (group.error >= format::kInfiniteError || !(group.error > 0.0F)) continue;
@@ -50,7 +49,7 @@ double position_rounding(const format::MeshRecord& mesh) {
 
 namespace {
 
-/// What a cut stores of the clusters that go by distances.
+/// What a cut stores of its clusters.
 double stored_error_of(const run::Asset& asset, const format::MeshRecord& mesh, std::span<const ClusterId> clusters) {
   double error = mesh.level0_deviation;
   for (const ClusterId c : clusters) {
@@ -164,30 +163,18 @@ class Brackets {
   std::vector<std::uint8_t> is_near_;  ///< of each cluster of the mesh
 };
 
-/// Of a mesh with an aggregate the part that is none. Which triangles of the source these are the source does not say;
-/// level 0 does, and is it but for the grid.
-Result<Surface> other_part(const run::Asset& asset, MeshId mesh) {
-  return surface_of_clusters(asset, mesh,
-                             clusters_of_part(asset, run::select_uniform(asset, mesh, -1.0).clusters, Part::kOther));
-}
-
 }  // namespace
 
 Result<std::vector<CutBracket>> bracket_cuts(const run::Asset& asset, MeshId mesh, const scene::SourceMesh& source,
                                              std::uint32_t cuts, std::uint32_t budget) {
   const format::MeshRecord& record = asset.meshes()[mesh.value];
-  const bool is_part = has_aggregates(asset, mesh);
   std::vector<CutBracket> out;
-  Result<Surface> truth = is_part ? other_part(asset, mesh) : surface_of_source(source);
-  if (!truth) return truth.error();
-  if (is_part && truth->triangles.empty()) return out;
-  Brackets brackets(asset, mesh, std::move(*truth), budget);
-  const double rounding = position_rounding(record) + (is_part ? double{record.level0_deviation} : 0.0);
+  Brackets brackets(asset, mesh, surface_of_source(source), budget);
+  const double rounding = position_rounding(record);
   std::vector<ClusterId> previous;
   for (const double threshold :
        spread_thresholds(asset.groups().subspan(record.first_group, record.group_count), cuts)) {
     std::vector<ClusterId> clusters = run::select_uniform(asset, mesh, threshold).clusters;
-    if (is_part) clusters = clusters_of_part(asset, clusters, Part::kOther);
     if (clusters == previous) continue;
     CutBracket cut;
     cut.mesh = mesh;
@@ -207,7 +194,7 @@ std::vector<CutBracket> check_deviations(const run::Asset& asset, const scene::S
   std::vector<CutBracket> out;
   for (std::uint32_t m = 0; m < std::min(asset.meshes().size(), source.meshes.size()); ++m) {
     const format::ErrorTier tier = asset.meshes()[m].error_tier;
-    if (tier == format::ErrorTier::kQem) continue;
+    if (tier == format::ErrorTier::kQem || has_aggregates(asset, MeshId(m))) continue;
     const double limit = tier == format::ErrorTier::kCertified ? 1.0 : 1.0 + kMeasuredShortfall;
     const auto brackets = bracket_cuts(asset, MeshId(m), source.meshes[m], cuts, budget);
     if (!brackets) {

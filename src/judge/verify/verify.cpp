@@ -16,6 +16,7 @@
 #include "judge/verify/deviations.h"
 #include "judge/verify/locked_borders.h"
 #include "judge/verify/promises.h"
+#include "judge/verify/source_parts.h"
 #include "judge/verify/source_rules.h"
 #include "scene/count/file_triangles.h"
 
@@ -304,7 +305,9 @@ void add_promises(const run::Asset& asset, const scene::Scene& source, const Ver
 
 }  // namespace
 
-VerifyReport verify_asset(const run::Asset& asset, const scene::Scene& source, const VerifyOptions& options) {
+VerifyReport verify_asset(const run::Asset& asset, const scene::Scene& whole, const VerifyOptions& options) {
+  const std::optional<scene::Scene> split = split_source(asset, whole);
+  const scene::Scene& source = split ? *split : whole;
   Report report;
   add_structure(asset, report);
   Result<std::vector<run::DecodedCluster>> clusters = run::decode_all(asset);

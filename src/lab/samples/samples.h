@@ -107,7 +107,8 @@ struct SampleFile {
 [[nodiscard]] SampleFile make_aggregate_file(const std::string& name);
 
 /// "painted-tree.glb", a scene for measurements of what is painted: bark and masked leaves in one mesh.
-[[nodiscard]] SampleFile make_painted_tree_file();
+/// As make_tree_wood() and make_tree_leaves().
+[[nodiscard]] SampleFile make_painted_tree_file(std::uint32_t around = 48, std::uint32_t leaves = 2400);
 
 /// The names of data/, in order.
 [[nodiscard]] std::vector<std::string> sample_names();

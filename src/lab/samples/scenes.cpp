@@ -116,11 +116,10 @@ SampleFile make_aggregate_file(const std::string& name) {
   return {name + ".glb", write_glb(scene_of(name.c_str(), std::move(shape), material))};
 }
 
-SampleFile make_painted_tree_file() {
-  GlbScene scene = textured_scene_of("painted-tree", make_tree_wood(48), {}, make_bark_texture(256));
-  Primitive leaves = make_tree_leaves(2400);
-  leaves.material = MaterialId(1u);
-  scene.meshes[0].primitives.push_back(std::move(leaves));
+SampleFile make_painted_tree_file(std::uint32_t around, std::uint32_t leaves) {
+  GlbScene scene = textured_scene_of("painted-tree", make_tree_wood(around), {}, make_bark_texture(256));
+  scene.meshes[0].primitives.push_back(make_tree_leaves(leaves));
+  scene.meshes[0].primitives.back().material = MaterialId(1u);
   GlbMaterial leaf;
   leaf.name = "leaf";
   leaf.is_masked = leaf.double_sided = true;

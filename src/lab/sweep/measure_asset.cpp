@@ -13,6 +13,7 @@
 #include "judge/metrics/attribute_drift.h"
 #include "judge/metrics/cut_judge.h"
 #include "judge/metrics/cut_search.h"
+#include "judge/verify/source_parts.h"
 #include "lab/sweep/metrics.h"
 #include "run/decode/decode.h"
 
@@ -168,6 +169,9 @@ void take_content_figures(const Measurement& from, Measurement& out) {
 }
 
 Status SourceMeasure::measure(const run::Asset& asset, Measurement& out) {
+  if (const std::optional<scene::Scene> split = judge::split_source(asset, source_)) {
+    return SourceMeasure(*split, samples_, searches_).measure(asset, out);
+  }
   if (source_.meshes.size() != asset.meshes().size()) {
     return Error{ErrorCode::kInvalid, "", "the scene and the asset have different numbers of meshes"};
   }

@@ -13,6 +13,7 @@
 
 #include "app/export/build_scene.h"
 #include "builder/builder.h"
+#include "lab/samples/samples.h"
 #include "scene/scene.h"
 
 namespace meshlode::app {
@@ -225,6 +226,45 @@ TEST(Compare, AFigureThatWasNotMeasuredIsCalledSo) {
   const std::string text = comparison_text(comparison);
   EXPECT_NE(text.find("0.5     not measured                -         -\n"), std::string::npos) << text;
   EXPECT_NE(text.find("-                7                -         -\n"), std::string::npos) << text;
+}
+
+run::Asset tree_with_leaves(AggregateChoice choice) {
+  scene::SourceMesh tree = lab::as_mesh(lab::make_rock(8));
+  tree.name = "tree";
+  tree.primitives.push_back(lab::make_foliage(300));
+  for (std::uint32_t m = 0; m < 2; ++m) tree.primitives[m].material = MaterialId(m);
+  scene::Scene scene = lab::as_scene(std::move(tree));
+  scene.materials.resize(2, scene.materials[0]);
+  builder::PipelineOptions options;
+  options.aggregate = choice;
+  options.error_tier = format::ErrorTier::kQem;
+  builder::PipelineReport report;
+  return run::Asset::from_vector(builder::build_lode(scene, options, {}, report).value()).value();
+}
+
+TEST(Compare, AMeshIsComparedWithWhatItAndItsPartAreTogether) {
+  const run::Asset one = tree_with_leaves(AggregateChoice::kNever), two = tree_with_leaves(AggregateChoice::kAlways);
+  ASSERT_EQ(one.meshes().size(), 1U);
+  ASSERT_EQ(two.meshes().size(), 2U);
+  const Json change = compared(one, two);
+  ASSERT_EQ(change.at("meshes").size(), 1U);
+  EXPECT_TRUE(change.at("meshes_added").empty());
+  EXPECT_TRUE(change.at("meshes_removed").empty());
+  const Json &mesh = change.at("meshes")[0], whole = described(one).at("meshes")[0],
+             parts = described(two).at("meshes");
+  EXPECT_EQ(mesh.at("source_triangles").at("ratio"), 1.0);
+  std::size_t checked = 0;
+  for (const char* key : {"clusters", "stored_triangles", "stored_vertices", "groups", "roots"}) {
+    const auto sum = parts[0].at(key).get<std::uint64_t>() + parts[1].at(key).get<std::uint64_t>();
+    checked += check_change(mesh.at(key), whole.at(key), sum);
+  }
+  EXPECT_EQ(checked, 5U);
+  const auto level1 = [&](const char* key) {
+    return parts[0].at("levels")[1].at(key).get<double>() + parts[1].at("levels")[1].at(key).get<double>();
+  };
+  EXPECT_EQ(mesh.at("by_level")[1].at("triangles").at("new"), level1("triangles"));
+  EXPECT_EQ(compared(two, one).at("meshes").size(), 1U);
+  EXPECT_EQ(compared(two, two).at("meshes").size(), 2U) << "each with its own";
 }
 
 TEST(Compare, AFailedConditionIsInTheDocument) {

@@ -47,6 +47,20 @@ TEST(Meta, RefusesDeepNesting) {
   EXPECT_EQ(read_meta(brackets_in_text).source_file, std::string(1000, '['));
 }
 
+TEST(Meta, SaysWhatMeshesArePartsOf) {
+  const auto origins = [](const char* parts) {
+    return origins_of_meshes(read_meta(std::string(R"({"parts":)") + parts + "}"), 4);
+  };
+  using Origins = std::vector<std::size_t>;
+  EXPECT_EQ(origins(R"([{"mesh":2,"of":0},{"mesh":3,"of":1}])"), (Origins{0, 1, 0, 1}));
+  for (const char* none :
+       {"[]", "{}", "[7]", R"([{"mesh":2}])", R"([{"mesh":-2,"of":0}])", R"([{"mesh":4,"of":0}])",
+        R"([{"mesh":0,"of":2}])", R"([{"mesh":2,"of":2}])", R"([{"mesh":2,"of":18446744073709551615}])"}) {
+    EXPECT_EQ(origins(none), (Origins{0, 1, 2, 3})) << none;
+  }
+  EXPECT_EQ(origins(R"([{"mesh":2,"of":0},{"mesh":3,"of":2}])"), (Origins{0, 1, 0, 3})) << "of a part is none";
+}
+
 TEST(Meta, ListsTextures) {
   const auto textures = read_textures(R"({"textures":[{"source":2,"sampler":0,"name":"bark"},{},4]})");
   ASSERT_EQ(textures.size(), 3U);

@@ -63,10 +63,9 @@ TEST(AggregateParts, LeavesOfATreeAreOneAndItsTrunkIsNot) {
   EXPECT_EQ(is_used, (std::vector<std::uint8_t>{0, 1}));
   const AggregateDecision all = decide_aggregate(tree, {.choice = AggregateChoice::kAlways});
   EXPECT_EQ(all.most_triangles, (Most{0, 512}));
-  EXPECT_FALSE(decide_aggregate(tree, {.choice = AggregateChoice::kAuto, .may_be_part = false}).is_aggregate);
-  EXPECT_TRUE(
-      decide_aggregate(mesh_of({lab::make_grass(2000), lab::make_foliage(2000)}), {.choice = AggregateChoice::kAuto})
-          .most_triangles.empty())
+  EXPECT_TRUE(decide_aggregate(mesh_of({lab::make_grass(2000), lab::make_foliage(2000)}),
+                               {.choice = AggregateChoice::kAuto})
+                  .most_triangles.empty())
       << "all of it";
   EXPECT_FALSE(
       decide_aggregate(mesh_of({lab::make_rock(16), lab::make_foliage(200)}), {.choice = AggregateChoice::kAuto})
@@ -142,6 +141,12 @@ TEST(AggregateParts, OfWhatIsLeftOutNothingRemains) {
   EXPECT_TRUE(decision.most_triangles.empty());
   leave_out(tree, std::vector<std::uint8_t>{1, 1}, "again", decision);
   EXPECT_EQ(decision.reason, "unread");
+  // A piece of two materials is left out with either.
+  scene::SourceMesh two = mesh_of({lab::make_rock(16), lab::make_foliage(1000), lab::make_foliage(1000)});
+  decision = decide_aggregate(two, {.choice = AggregateChoice::kAuto});
+  ASSERT_EQ(decision.most_triangles, (Most{0, 512, 512}));
+  leave_out(two, std::vector<std::uint8_t>{0, 0, 1}, "unread", decision);
+  EXPECT_FALSE(decision.is_aggregate) << "the same cards, twice";
 }
 
 TEST(CoarseMaterials, AreOpaqueDoubleSidedAndInOneColor) {

@@ -8,11 +8,14 @@
 
 #include <gtest/gtest.h>
 
+#include "judge/metrics/coverage.h"
 #include "judge/painted_ball.h"
 #include "judge/validate/edit.h"
 #include "judge/verify/promises.h"
 #include "judge/verify/verify.h"
+#include "meshlode/material_looks.h"
 #include "run/read/asset.h"
+#include "scene/import/gltf_builder.h"
 
 namespace meshlode::judge {
 namespace {
@@ -73,6 +76,44 @@ TEST(PromisesOf, ABallAreTrueInEveryUnit) {
     EXPECT_LE(promised.largest, 1.05) << promised.promise;
     EXPECT_GT(promised.median, 0.5) << promised.promise << ": it promises about what it keeps";
   }
+}
+
+/// The masked cards are thinned out by what they cover, and the wood keeps its texels.
+TEST(PromisesOf, ATreeAreOfItsWoodAndItsLeavesKeepWhatTheyCover) {
+  const testing::TempFolder folder;
+  const lab::SampleFile file = lab::make_painted_tree_file(12, 600);
+  const auto scene =
+      scene::import_scene(folder.write(file.name, std::string(file.bytes.begin(), file.bytes.end())), {});
+  ASSERT_TRUE(scene.ok()) << scene.error().message();
+  builder::PipelineOptions options;
+  options.promise = format::Promise::kTexels;
+  options.aggregate = AggregateChoice::kAuto;
+  options.looks = &cli::image_looks();
+  builder::PipelineReport built;
+  const auto bytes = builder::build_lode(*scene, options, {}, built);
+  ASSERT_TRUE(bytes.ok()) << bytes.error().message();
+  const Result<run::Asset> asset = run::Asset::from_vector(*bytes);
+  ASSERT_TRUE(asset.ok());
+  ASSERT_EQ(asset->meshes().size(), 2U);
+  EXPECT_FALSE(has_aggregates(*asset, MeshId(0U)));
+  EXPECT_TRUE(has_aggregates(*asset, MeshId(1U)));
+  bool is_any_more = false;
+  for (std::uint32_t m = 0; m < 2; ++m) {
+    const format::MeshRecord& mesh = asset->meshes()[m];
+    for (std::uint32_t g = mesh.first_group; g < mesh.first_group + mesh.group_count; ++g) {
+      const float texels = asset->promise_errors()[g].texel_error, error = asset->groups()[g].error;
+      is_any_more = is_any_more || texels > error;
+      EXPECT_TRUE(m == 0 || texels == error) << g;
+    }
+  }
+  EXPECT_TRUE(is_any_more);
+  const VerifyReport report = verify_bytes(*bytes, *scene);
+  EXPECT_EQ(details_of(report), "");
+  ASSERT_EQ(report.promises.size(), 1U);
+  EXPECT_GE(report.promises[0].cuts, 4U);
+  EXPECT_EQ(std::count_if(report.checks.begin(), report.checks.end(),
+                          [](const auto& check) { return check.what.starts_with("aggregates cover"); }),
+            1);
 }
 
 TEST(PromisesOf, TexelsSayNothingOfAppearance) {
