@@ -215,7 +215,7 @@ Result<BuiltMesh> build_mesh(const Source& from, std::size_t index, const Survey
   }
 
   const std::uint32_t promises = promises_of(options.promise);
-  const bool is_painted = promises != 0 && !aggregate.is_aggregate;
+  const bool is_painted = promises != 0;  // an aggregate may come to have no level but the finest, which promises too
   PrepareOptions preparing = prepare_options(own);
   if (options.hooks != nullptr) preparing.separates_needles = options.hooks->separates_needles;
   preparing.keeps_flat_normals = is_painted && options.promise == format::Promise::kAppearance;
@@ -253,8 +253,9 @@ Result<BuiltMesh> build_mesh(const Source& from, std::size_t index, const Survey
   if (promises != 0) {
     const format::MeshRecord& record = built.encoded.record;
     const double margin = own.error_tier == format::ErrorTier::kCertified ? 1.0 : kMeasuredMargin;
-    PromiseErrors errors = painted ? measure_promises(*painted, *dag, record, built.encoded.groups, margin, promises)
-                                   : promises_of_positions(record, built.encoded.groups, promises);
+    PromiseErrors errors = painted && !has_aggregates(built.encoded.groups)
+                               ? measure_promises(*painted, *dag, record, built.encoded.groups, margin, promises)
+                               : promises_of_positions(record, built.encoded.groups, promises);
     built.encoded.promise = errors.mesh;
     built.encoded.promise_errors = std::move(errors.groups);
   }
