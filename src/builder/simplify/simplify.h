@@ -84,6 +84,9 @@ struct SimplifyResult {
   std::vector<std::uint32_t> triangle_material;
   double quadric_error = 0.0;  ///< object units: root of the largest mean squared distance of a collapse
   StuckReason reason = StuckReason::kNotStuck;  ///< what stopped it short of the target: the commonest obstacle
+  /// So many collapses the last pass refused for their size alone: at a hub (Ring::kMost), of an edge with too many
+  /// triangles (CollapseStar::kMostOnEdge), or with too many vertices going at once (LeftBehind::kMostVertices).
+  std::uint64_t crowded = 0;
 };
 
 /// The result has the input's border (I6, docs/validation.md): edge by edge where both ends are locked, simplified
