@@ -34,9 +34,10 @@ ROOT = Path(__file__).resolve().parents[2]
 # Room: its files, and the program that is asked first.
 ROOMS = {
     "prepare": (["src/builder/prepare/*.cpp"], "prepare_test"),
-    "simplify": (["src/builder/simplify/quadric.h", "src/builder/simplify/attribute_quadrics.h", "src/builder/simplify/placement.cpp",
-                  "src/builder/simplify/surface_quadrics.*", "src/builder/simplify/attribute_scales.cpp",
+    "simplify": (["src/builder/simplify/quadric.h", "src/builder/simplify/attribute_quadrics.h", "src/builder/simplify/placement.h",
+                  "src/builder/simplify/surface_quadrics.h", "src/builder/simplify/attribute_scales.cpp",
                   "src/builder/simplify/point_triangle.h", "src/builder/simplify/guards.cpp", "src/builder/simplify/left_behind.cpp",
+                  "src/builder/simplify/new_surface.cpp", "src/builder/simplify/edge_heap.h",
                   "src/builder/simplify/group_places.*", "src/builder/simplify/pieces.cpp"], "simplify_test"),
     "deviation": (["src/builder/deviation/certify.cpp", "src/builder/deviation/measure.cpp", "src/builder/deviation/patch.h",
                    "src/builder/deviation/point_distance.h", "src/builder/deviation/capsules.*",

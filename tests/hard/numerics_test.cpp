@@ -173,10 +173,10 @@ TEST(Numerics, AQuadricThatIsTrustedIsSolvedToItsResidual) {
     }
     const Quad x = p.x, y = p.y, z = p.z;
     const std::array<Quad, 3> rest{
-        Quad(quadric.a00) * x + Quad(quadric.a01) * y + Quad(quadric.a02) * z + Quad(quadric.b0),
-        Quad(quadric.a01) * x + Quad(quadric.a11) * y + Quad(quadric.a12) * z + Quad(quadric.b1),
-        Quad(quadric.a02) * x + Quad(quadric.a12) * y + Quad(quadric.a22) * z + Quad(quadric.b2)};
-    const Quad trace = Quad(quadric.a00) + Quad(quadric.a11) + Quad(quadric.a22);
+        Quad(quadric.a00()) * x + Quad(quadric.a01()) * y + Quad(quadric.a02()) * z + Quad(quadric.b0()),
+        Quad(quadric.a01()) * x + Quad(quadric.a11()) * y + Quad(quadric.a12()) * z + Quad(quadric.b1()),
+        Quad(quadric.a02()) * x + Quad(quadric.a12()) * y + Quad(quadric.a22()) * z + Quad(quadric.b2())};
+    const Quad trace = Quad(quadric.a00()) + Quad(quadric.a11()) + Quad(quadric.a22());
     const Quad bound = 31 * Quad(kDouble) * trace * length_of({x, y, z});
     worst.take((length_of(rest) / bound).convert_to<double>(), round);
   }

@@ -11,6 +11,7 @@
 #include "base/vec.h"
 #include "builder/simplify/collapse_mesh.h"
 #include "builder/simplify/collapse_star.h"
+#include "builder/simplify/edge_uses.h"
 #include "builder/simplify/group_places.h"
 #include "builder/simplify/simplify.h"
 #include "support/random.h"
@@ -31,20 +32,36 @@ struct DrawnMesh {
   std::vector<std::uint32_t> wedge_position;
   CollapseMesh mesh;
   GroupPlaces places;
+  builder::VertexMarks marks;
 
   DrawnMesh(std::vector<Vec3i> at, std::vector<WedgeTriangle> of, const std::vector<std::uint32_t>& more = {})
       : points(std::move(at)),
         triangles(std::move(of)),
         wedge_position(own_wedges(points.size(), more)),
         mesh(triangles, wedge_position, points.size()),
-        places(points) {}
+        places(points),
+        marks(points.size()) {
+    mesh.number_edges(builder::sorted_edge_uses(mesh));
+  }
 
+  /// With its facets around the middle of the edge, or around `target`.
   [[nodiscard]] CollapseStar star(std::uint32_t a, std::uint32_t b, bool drops_sheets = false) {
+    return star_at((places[a] + places[b]) * 0.5, a, b, drops_sheets);
+  }
+  [[nodiscard]] CollapseStar star_at(const Vec3d& target, std::uint32_t a, std::uint32_t b, bool drops_sheets = false) {
     CollapseStar star;
-    builder::gather_corners(mesh, a, b, star);
-    builder::gather_outer_edges(mesh, drops_sheets, star);
-    star.target = (places[a] + places[b]) * 0.5;
+    mesh.gather(a, star.a);
+    mesh.gather(b, star.b);
+    (void)builder::gather_star(mesh, marks, star);
+    if (drops_sheets) builder::move_sheets_out(star);
+    star.target = target;
+    builder::gather_facets(mesh, places, star);
     return star;
+  }
+  /// b becomes a, where a is.
+  void join(std::uint32_t a, std::uint32_t b) {
+    const CollapseStar joined = star(a, b);
+    mesh.join(joined.a, joined.b, joined.gone(), joined.on_edge, false);
   }
 
   static std::vector<std::uint32_t> own_wedges(std::size_t count, const std::vector<std::uint32_t>& more) {

@@ -2,7 +2,8 @@
 #include "builder/simplify/collapse_mesh.h"
 
 #include <algorithm>
-#include <tuple>
+
+#include "builder/simplify/edge_uses.h"
 
 namespace meshlode::builder {
 
@@ -11,6 +12,7 @@ CollapseMesh::CollapseMesh(const std::vector<WedgeTriangle>& triangles,
     : vertex_(3 * triangles.size()),
       wedge_(3 * triangles.size()),
       next_(3 * triangles.size(), kEnd),
+      edge_(3 * triangles.size(), kEnd),
       head_(vertex_count, kEnd),
       tail_(vertex_count, kEnd),
       is_alive_(triangles.size(), 1),
@@ -20,9 +22,10 @@ CollapseMesh::CollapseMesh(const std::vector<WedgeTriangle>& triangles,
       wedge_[3 * t + k] = triangles[t][k];
       vertex_[3 * t + k] = wedge_position[triangles[t][k]];
     }
-    const std::uint32_t* v = &vertex_[3 * t];
+    const std::uint32_t* v = &vertex_[3 * std::size_t{t}];
     if (v[0] == v[1] || v[1] == v[2] || v[2] == v[0]) {
-      kill(t);
+      is_alive_[t] = 0;
+      --alive_count_;
       continue;
     }
     for (std::uint32_t corner = 3 * t; corner < 3 * t + 3; ++corner) {
@@ -37,18 +40,34 @@ CollapseMesh::CollapseMesh(const std::vector<WedgeTriangle>& triangles,
   }
 }
 
-void CollapseMesh::corners_of(std::uint32_t vertex, std::vector<std::uint32_t>& out) {
-  out.clear();
+void CollapseMesh::number_edges(std::span<const EdgeUse> uses) {
+  ends_.reserve(uses.size() / 2);
+  for (std::size_t i = 0; i < uses.size(); ++i) {
+    const bool is_first = i == 0 || uses[i].a != uses[i - 1].a || uses[i].b != uses[i - 1].b;
+    if (is_first) ends_.push_back({uses[i].a, uses[i].b});
+    edge_[uses[i].corner] = static_cast<std::uint32_t>(ends_.size() - 1);
+  }
+}
+
+// Corners of dead triangles are unlinked on the way, so that none is met twice.
+void CollapseMesh::gather(std::uint32_t vertex, Ring& out) {
+  out.vertex = vertex;
+  out.count = 0;
+  out.is_hub = false;
   std::uint32_t previous = kEnd;
   for (std::uint32_t corner = head_[vertex]; corner != kEnd; corner = next_[corner]) {
-    if (!is_alive(corner / 3)) continue;  // unlinked below
+    if (!is_alive(corner / 3)) continue;
     if (previous == kEnd) {
       head_[vertex] = corner;
     } else {
       next_[previous] = corner;
     }
     previous = corner;
-    out.push_back(corner);
+    if (out.count == Ring::kMost) {
+      out.is_hub = true;
+      return;
+    }
+    out.corner[out.count++] = corner;
   }
   if (previous == kEnd) {
     head_[vertex] = kEnd;
@@ -58,14 +77,93 @@ void CollapseMesh::corners_of(std::uint32_t vertex, std::vector<std::uint32_t>& 
   tail_[vertex] = previous;
 }
 
-void CollapseMesh::merge_vertices(std::uint32_t to, std::uint32_t from) {
-  for (std::uint32_t corner = head_[from]; corner != kEnd; corner = next_[corner]) {
-    vertex_[corner] = to;
-    const std::uint32_t t = corner / 3;
-    if (!is_alive(t)) continue;
-    const std::uint32_t* v = &vertex_[3 * t];
-    if (v[0] == v[1] || v[1] == v[2] || v[2] == v[0]) kill(t);
+struct CollapseMesh::EdgePairs {
+  std::uint32_t count = 0;
+  std::array<std::uint32_t, 2 * Ring::kMost> kept, dropped;
+
+  /// What the edge becomes: mostly itself.
+  [[nodiscard]] std::uint32_t heir_of(std::uint32_t edge) const {
+    for (std::uint32_t k = 0; k < count; ++k) {
+      if (dropped[k] == edge) return kept[k];
+    }
+    return edge;
   }
+  void add(std::uint32_t keep, std::uint32_t drop) {
+    if (keep == drop || heir_of(drop) != drop) return;
+    kept[count] = keep;
+    dropped[count++] = drop;
+  }
+};
+
+/// They are sides of the triangles on the edge.
+void CollapseMesh::pair_on(const Ring& a, const Ring& b, std::span<const std::uint32_t> triangles, EdgePairs& out) {
+  for (const std::uint32_t t : triangles) {
+    std::uint32_t kept = kEnd, dropped = kEnd;
+    for (std::uint32_t corner = 3 * t; corner < 3 * t + 3; ++corner) {
+      const std::uint32_t u = vertex_[corner], v = vertex_[next_in_triangle(corner)];
+      const bool is_at_a = u == a.vertex || v == a.vertex, is_at_b = u == b.vertex || v == b.vertex;
+      if (is_at_a && is_at_b) {
+        ends_[edge_[corner]][0] = kEnd;
+      } else {
+        (is_at_a ? kept : dropped) = edge_[corner];
+      }
+    }
+    out.add(kept, dropped);
+  }
+}
+
+/// Wherever they are: several triangles on an edge, or none between two edges that become one.
+void CollapseMesh::pair_by_neighbors(const Ring& a, const Ring& b, EdgePairs& out) {
+  std::array<std::uint32_t, 2 * Ring::kMost> neighbor, edge;
+  std::uint32_t count = 0;
+  const auto for_sides = [&](const Ring& end, const auto& visit) {
+    for (const std::uint32_t corner : end.corners()) {
+      const auto [next, previous] = others(corner);
+      visit(next, edge_[corner]);
+      visit(previous, edge_[next_in_triangle(next_in_triangle(corner))]);
+    }
+  };
+  for_sides(a, [&](std::uint32_t other, std::uint32_t side) {
+    neighbor[count] = other;
+    edge[count++] = side;
+  });
+  for_sides(b, [&](std::uint32_t other, std::uint32_t side) {
+    if (other == a.vertex) {
+      ends_[side][0] = kEnd;
+      return;
+    }
+    const auto met = std::find(neighbor.begin(), neighbor.begin() + count, other);
+    if (met != neighbor.begin() + count) out.add(edge[static_cast<std::size_t>(met - neighbor.begin())], side);
+  });
+}
+
+void CollapseMesh::move_ends(const Ring& b, std::uint32_t a, const EdgePairs& pairs) {
+  for (const std::uint32_t corner : b.corners()) {
+    if (!is_alive(corner / 3)) continue;
+    vertex_[corner] = a;
+    for (const std::uint32_t side : {corner, next_in_triangle(next_in_triangle(corner))}) {
+      edge_[side] = pairs.heir_of(edge_[side]);
+      Ends& ends = ends_[edge_[side]];
+      if (ends[0] == b.vertex) ends[0] = a;
+      if (ends[1] == b.vertex) ends[1] = a;
+    }
+  }
+  for (std::uint32_t k = 0; k < pairs.count; ++k) ends_[pairs.dropped[k]][0] = kEnd;
+}
+
+// An edge that no triangle stands on any more keeps its ends: it has no star when it comes up.
+void CollapseMesh::join(const Ring& a, const Ring& b, std::span<const std::uint32_t> gone, std::size_t on_edge,
+                        bool is_manifold) {
+  EdgePairs pairs;
+  if (is_manifold) {
+    pair_on(a, b, gone.first(on_edge), pairs);
+  } else {
+    pair_by_neighbors(a, b, pairs);
+  }
+  for (const std::uint32_t t : gone) is_alive_[t] = 0;
+  alive_count_ -= static_cast<std::uint32_t>(gone.size());
+  move_ends(b, a.vertex, pairs);
+  const std::uint32_t to = a.vertex, from = b.vertex;
   if (head_[from] == kEnd) return;
   if (head_[to] == kEnd) {
     head_[to] = head_[from];
@@ -74,38 +172,6 @@ void CollapseMesh::merge_vertices(std::uint32_t to, std::uint32_t from) {
   }
   tail_[to] = tail_[from];
   head_[from] = tail_[from] = kEnd;
-}
-
-void CollapseMesh::drop_opposite_pairs(std::uint32_t vertex, std::vector<std::uint32_t>& dropped) {
-  // By the two other vertices, then in the order around `vertex`: a hub may have thousands.
-  struct Spoke {
-    std::uint32_t low, high, order, triangle;
-    bool is_turned;
-  };
-  std::vector<std::uint32_t> corners;
-  corners_of(vertex, corners);
-  std::vector<Spoke> spokes;
-  spokes.reserve(corners.size());
-  for (const std::uint32_t corner : corners) {
-    const std::uint32_t a = vertex_[next_in_triangle(corner)];
-    const std::uint32_t b = vertex_[next_in_triangle(next_in_triangle(corner))];
-    spokes.push_back({std::min(a, b), std::max(a, b), static_cast<std::uint32_t>(spokes.size()), corner / 3, a > b});
-  }
-  std::sort(spokes.begin(), spokes.end(), [](const Spoke& s, const Spoke& t) {
-    return std::tie(s.low, s.high, s.order) < std::tie(t.low, t.high, t.order);
-  });
-  dropped.clear();
-  for (std::size_t i = 0; i < spokes.size(); ++i) {
-    if (!is_alive(spokes[i].triangle)) continue;
-    for (std::size_t j = i + 1; j < spokes.size() && spokes[j].low == spokes[i].low && spokes[j].high == spokes[i].high;
-         ++j) {
-      if (!is_alive(spokes[j].triangle) || spokes[j].is_turned == spokes[i].is_turned) continue;
-      kill(spokes[i].triangle);
-      kill(spokes[j].triangle);
-      dropped.push_back(spokes[i].triangle);
-      break;
-    }
-  }
 }
 
 }  // namespace meshlode::builder

@@ -28,8 +28,8 @@ Vec3i GroupPlaces::to_grid(const Vec3d& p) const {
   const Vec3d q = p * scale_ + center_;
   Vec3i out;
   for (int k = 0; k < 3; ++k) {
-    const double rounded = std::floor(q[k] + 0.5);
-    out[k] = static_cast<int>(std::clamp<double>(rounded, -format::kMaxGridCoordinate, format::kMaxGridCoordinate));
+    constexpr double kMost = format::kMaxGridCoordinate;
+    out[k] = static_cast<int>(std::max(-kMost, std::min(kMost, std::floor(q[k] + 0.5))));  // in this order no NaN stays
   }
   return out;
 }

@@ -26,11 +26,12 @@ class GroupPlaces {
   [[nodiscard]] Vec3d to_frame(const Vec3i& q) const { return (Vec3d(q) - center_) * inverse_scale_; }
   /// The nearest point of the grid.
   [[nodiscard]] Vec3i to_grid(const Vec3d& p) const;
-  /// To the point of the grid nearest to p.
-  void move(std::uint32_t vertex, const Vec3d& p) {
-    grid_position_[vertex] = to_grid(p);
-    position_[vertex] = to_frame(grid_position_[vertex]);
+  void move(std::uint32_t vertex, const Vec3i& to) {
+    grid_position_[vertex] = to;
+    position_[vertex] = to_frame(to);
   }
+  /// To the point of the grid nearest to p.
+  void move(std::uint32_t vertex, const Vec3d& p) { move(vertex, to_grid(p)); }
 
  private:
   Vec3d center_{0.0};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The simplifier's queue and passes, for at most Capacity attributes. Used by simplify.cpp alone. What a collapse
-// costs, what may not be collapsed and what is left behind are types and functions of their own, each in its file.
+// The simplifier's loop: the cheapest edge is tried; its star is gathered, its guards are asked, and it is collapsed or
+// put back at its price. What a collapse costs, what may not be collapsed and what is left behind are types and
+// functions of their own, each in its file.
 //
 // Order of collapses: E / √W, E the area-weighted quadric error at the new place and W the summed area. It beats E
 // because E grows with the area behind a vertex, not only with how far the surface moves.
@@ -10,16 +11,15 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <numeric>
 #include <optional>
 #include <utility>
 #include <vector>
 
-#include "builder/simplify/attribute_quadrics.h"
-#include "builder/simplify/attribute_scales.h"
-#include "builder/simplify/candidate_queue.h"
+#include "base/ids.h"
+#include "builder/simplify/collapse_costs.h"
 #include "builder/simplify/collapse_mesh.h"
 #include "builder/simplify/collapse_star.h"
+#include "builder/simplify/edge_heap.h"
 #include "builder/simplify/edge_uses.h"
 #include "builder/simplify/group_locks.h"
 #include "builder/simplify/group_places.h"
@@ -28,17 +28,17 @@
 #include "builder/simplify/kept_topology.h"
 #include "builder/simplify/left_behind.h"
 #include "builder/simplify/new_surface.h"
+#include "builder/simplify/obstacles.h"
 #include "builder/simplify/painted_guard.h"
 #include "builder/simplify/pieces.h"
-#include "builder/simplify/placement.h"
+#include "builder/simplify/refused_edges.h"
 #include "builder/simplify/simplify.h"
-#include "builder/simplify/surface_quadrics.h"
-#include "builder/simplify/wedge_classes.h"
+#include "builder/simplify/write_group.h"
 
 namespace meshlode::builder {
 
-/// `Real` is what its quadrics are summed and solved in.
-template <class Real, std::size_t Capacity>
+/// For at most Capacity attributes.
+template <class Numbers, std::size_t Capacity>
 class GroupSimplifier {
  public:
   /// Both must outlive this.
@@ -49,6 +49,8 @@ class GroupSimplifier {
   [[nodiscard]] bool has_free_border() const { return has_free_border_; }
 
  private:
+  using Real = typename Numbers::Real;
+
   static constexpr int kMaxPasses = 8;
   /// A collapse costs at least this share of what its largest displacement, of the old surface from the new or of the
   /// new from the old, would cost as a mean distance.
@@ -60,426 +62,310 @@ class GroupSimplifier {
   /// about ten times as far off.
   static constexpr double kTopologyPrice = 10.0;
 
-  struct Placement {
-    Vec3d position{0.0};
-    double cost = 0.0;
+  /// What the edge was weighed at.
+  struct Candidate {
+    std::uint32_t versions = 0;  ///< of its ends: they only grow, so that their sum is the same where neither has
+    bool may_break_topology = false;
+    Vec3f place{0.0F};
   };
-  /// Where make_candidate() has put a vertex.
-  struct Placed {
-    Vec3d position{0.0};
-    std::uint32_t a = kNoId, b = kNoId, versions = 0;
-  };
-  /// The last two are none: the candidate waits at another price, or its edge went with a sheet.
-  enum class Obstacle : std::uint8_t { kNone, kLocked, kFlips, kSeams, kTopology, kPutBack, kNoEdge };
-
-  void add_faces();
   void run_passes();
-  void seed_candidates();
-  /// False where both ends are locked, which is counted.
-  [[nodiscard]] bool is_free_to_collapse(std::uint32_t a, std::uint32_t b);
-  [[nodiscard]] Candidate make_candidate(std::uint32_t a, std::uint32_t b);
-  /// Weighs a candidate again whose ends have changed or been joined into others. False where they have become one, or
-  /// may not.
-  [[nodiscard]] bool refresh(Candidate& candidate);
-  /// The vertex that a vertex was joined into, or itself.
-  [[nodiscard]] std::uint32_t vertex_of(std::uint32_t joined);
-  void set_aside(const Candidate& refused);
-  void take_up_again(std::uint32_t vertex);
-  /// Versions only grow: their sum is the same where neither has.
-  [[nodiscard]] std::uint32_t versions_of(std::uint32_t a, std::uint32_t b) const { return version_[a] + version_[b]; }
-  [[nodiscard]] double add_classes(BasicQuadric<Real>& total) const;
-  [[nodiscard]] Vec3d place_again(std::uint32_t a, std::uint32_t b);
-  /// Where a vertex goes whose place is not free.
-  [[nodiscard]] const Vec3d& given_place(std::uint32_t a, std::uint32_t b) const {
-    return places_[locks_.is_vertex_locked[a] != 0 ? a : b];
+  void seed();
+  [[nodiscard]] bool run_pass();
+  void finish(std::uint32_t edge, Obstacle obstacle);
+  [[nodiscard]] bool is_locked(std::uint32_t vertex) const { return locks_.is_vertex_locked[vertex] != 0; }
+  /// False where both ends are locked, which is counted, or where it is gone.
+  [[nodiscard]] bool may_collapse(std::uint32_t edge);
+  [[nodiscard]] std::uint32_t versions_of(const CollapseMesh::Ends& ends) const {
+    return version_[ends[0]] + version_[ends[1]];
   }
-  [[nodiscard]] Placement place(std::uint32_t a, std::uint32_t b, BasicQuadric<Real>& total, double fixed_error) const;
-  [[nodiscard]] Obstacle try_collapse(const Candidate& candidate);
-  [[nodiscard]] double price_of(const Candidate& candidate);
-  void collapse(std::uint32_t a, std::uint32_t b);
-  [[nodiscard]] bool has_corners_in_one_place(std::uint32_t triangle) const;
-  [[nodiscard]] StuckReason reason_for_stopping() const;
+  [[nodiscard]] double weigh(std::uint32_t edge);
+
+  [[nodiscard]] Obstacle try_collapse(std::uint32_t edge, float cost);
+  [[nodiscard]] Obstacle gather(const CollapseMesh::Ends& ends);
+  [[nodiscard]] bool find_target(const Candidate& candidate);
+  [[nodiscard]] Obstacle ask_guards(Candidate& candidate, float cost);
+  [[nodiscard]] Obstacle ask_price(float cost);
+  void collapse();
+  void tell_what_vanished();
 
   const SimplifyInput& input_;
   const SimplifyOptions& options_;
   GroupLocks locks_;
   CollapseMesh mesh_;
   GroupPlaces places_;
-  SurfaceQuadrics<Real> surface_;
-  AttributeQuadrics<Real, Capacity> attributes_;
-  WedgeClasses classes_;
+  std::optional<GroupPlaces> grown_;  ///< of foliage, at the end: values stay those of the places before
+  CollapseCosts<Numbers, Capacity> costs_;
   LeftBehind left_behind_;
-  std::optional<OwnPlaces> own_places_;     ///< where topology is kept
-  std::vector<std::uint8_t> is_border_;     ///< per vertex
-  std::vector<std::uint32_t> version_;      ///< per vertex
-  std::vector<std::uint32_t> joined_into_;  ///< per vertex, itself where it was not joined into another
-
-  std::vector<EdgeUse> edge_uses_;  ///< before the first collapse; then nothing
-  CandidateQueue queue_;
-  std::vector<std::vector<std::uint32_t>> refused_;  ///< per vertex: the other ends of candidates that were refused
-  std::array<std::uint64_t, 7> obstacles_{};
-  Placed last_placed_;
-  double error_ = 0.0;  ///< frame units
-  bool has_free_border_ = false, has_broken_topology_ = false, are_flips_relaxed_ = false;
-
-  VertexMarks marks_;
-  CollapseStar star_;  ///< of the collapse that is weighed or done
-  StarEnd joined_;     ///< the vertex that came of it
-  NewSurface new_surface_;
   PaintedGuard<Real, Capacity> painted_;
+  std::optional<OwnPlaces> own_places_;  ///< where topology is kept
+  std::vector<std::uint8_t> is_border_;  ///< per vertex
+  std::vector<std::uint32_t> version_;   ///< per vertex
+  std::vector<Candidate> candidates_;    ///< per edge
+  EdgeHeap heap_;
+  RefusedEdges refused_;
+  Obstacles obstacles_;  ///< of the last pass
+  double error2_ = 0.0;  ///< frame units, squared
+  bool has_free_border_ = false, is_manifold_ = true, has_broken_topology_ = false, are_flips_relaxed_ = false;
+
+  // Of the collapse that is tried.
+  VertexMarks marks_;
+  CollapseStar star_;
+  Vec3i target_{0};
+  double price_ = 0.0;  ///< where it is put back
+  bool breaks_topology_ = false;
+  std::vector<std::uint32_t> taken_up_;
 };
 
-template <class Real, std::size_t C>
-GroupSimplifier<Real, C>::GroupSimplifier(const SimplifyInput& input, const SimplifyOptions& options)
+template <class Numbers, std::size_t C>
+GroupSimplifier<Numbers, C>::GroupSimplifier(const SimplifyInput& input, const SimplifyOptions& options)
     : input_(input),
       options_(options),
       locks_(input.is_locked, input.is_wedge_shared, input.wedge_position, input.is_border_locked),
       mesh_(input.triangles, input.wedge_position, input.positions.size()),
       places_(input.positions),
-      surface_(input.positions.size(), options.border_weight),
-      attributes_(input, attribute_scales(input, options, mesh_, places_)),
-      classes_(attributes_.count() == 0 ? 0 : input.wedge_position.size(), input.positions.size()),
-      left_behind_(input.witnesses, places_),
+      costs_(input, options, mesh_, places_, locks_),
+      left_behind_(input.witnesses, input.positions),
+      painted_(input, options.painted, places_),
       version_(input.positions.size(), 0),
-      joined_into_(input.positions.size()),
-      marks_(input.positions.size()),
-      painted_(input, options.painted, places_) {
-  std::iota(joined_into_.begin(), joined_into_.end(), 0U);
+      marks_(input.positions.size()) {
   if (options.keep_topology) own_places_.emplace(input);
-  add_faces();
-  HeldEdges held = find_held_edges(input, options, mesh_);
-  surface_.add_walls(held.edges, mesh_, places_);
+  const std::vector<EdgeUse> uses = sorted_edge_uses(mesh_);
+  mesh_.number_edges(uses);
+  HeldEdges held = find_held_edges(input, options, mesh_, uses);
+  costs_.add_walls(held.edges);
   is_border_ = std::move(held.is_border);
   has_free_border_ = held.has_free_border;
-  edge_uses_ = std::move(held.uses);
-  classes_.start(mesh_);
+  is_manifold_ = held.is_manifold;
+  candidates_.resize(mesh_.edge_count());
 }
 
-template <class Real, std::size_t C>
-void GroupSimplifier<Real, C>::add_faces() {
-  for (std::uint32_t t = 0; t < mesh_.triangle_count(); ++t) {
-    if (!mesh_.is_alive(t)) continue;
-    const Face face = face_of(mesh_, places_, t);
-    if (!(face.twice_area > 0.0)) continue;
-    surface_.add_face({mesh_.vertex(3 * t), mesh_.vertex(3 * t + 1), mesh_.vertex(3 * t + 2)}, face);
-    if (attributes_.count() == 0) continue;
-    attributes_.add_face({mesh_.wedge(3 * t), mesh_.wedge(3 * t + 1), mesh_.wedge(3 * t + 2)}, face);
-  }
-}
-
-template <class Real, std::size_t C>
-void GroupSimplifier<Real, C>::run() {
+template <class Numbers, std::size_t C>
+void GroupSimplifier<Numbers, C>::run() {
   run_passes();
   if (options_.may_relax_flips && mesh_.alive_count() > options_.target_triangles) {
     are_flips_relaxed_ = true;
     run_passes();
   }
-  if (options_.keep_area) error_ = std::max(error_, grow_pieces(input_, mesh_, places_));
+  if (!options_.keep_area) return;
+  grown_ = places_;
+  const double farthest = grow_pieces(input_, mesh_, *grown_);
+  error2_ = std::max(error2_, farthest * farthest);
 }
 
-template <class Real, std::size_t C>
-void GroupSimplifier<Real, C>::run_passes() {
+template <class Numbers, std::size_t C>
+void GroupSimplifier<Numbers, C>::run_passes() {
   for (int pass = 0; pass < kMaxPasses && mesh_.alive_count() > options_.target_triangles; ++pass) {
-    obstacles_.fill(0);
-    queue_.clear();
-    refused_.assign(places_.size(), {});
-    seed_candidates();
-    bool any = false;
-    Candidate last{-1.0, 0, 0, 0};
-    while (!queue_.empty() && mesh_.alive_count() > options_.target_triangles) {
-      Candidate candidate = queue_.front();
-      if (versions_of(candidate.a, candidate.b) != candidate.versions) {
-        if (refresh(candidate)) {
-          queue_.replace_front(candidate);
-        } else {
-          (void)queue_.pop();
-        }
-        continue;
-      }
-      (void)queue_.pop();
-      // Edges that have become one, or that both of their ends took up again, follow one another.
-      if (candidate == last) continue;
-      last = candidate;
-      const Obstacle obstacle = try_collapse(candidate);
-      if (obstacle == Obstacle::kNone) {
-        any = true;
-      } else {
-        ++obstacles_[static_cast<std::size_t>(obstacle)];
-        if (obstacle < Obstacle::kPutBack) set_aside(candidate);
-      }
+    seed();
+    // Obstacles depend on neighbours too, so what was refused is tried again as long as something moved.
+    if (!run_pass()) break;
+  }
+}
+
+template <class Numbers, std::size_t C>
+void GroupSimplifier<Numbers, C>::seed() {
+  obstacles_ = {};
+  heap_.clear();
+  refused_.start(places_.size(), mesh_.edge_count());
+  for (std::uint32_t edge = 0; edge < mesh_.edge_count(); ++edge) {
+    if (may_collapse(edge)) heap_.append(weigh(edge), edge);
+  }
+  heap_.order();
+}
+
+/// Whether anything collapsed.
+template <class Numbers, std::size_t C>
+bool GroupSimplifier<Numbers, C>::run_pass() {
+  bool any = false;
+  while (!heap_.empty() && mesh_.alive_count() > options_.target_triangles) {
+    const auto [cost, edge] = heap_.top();
+    if (!may_collapse(edge)) {
+      heap_.pop();
+    } else if (candidates_[edge].versions != versions_of(mesh_.ends(edge))) {
+      heap_.replace_top(weigh(edge));
+    } else {
+      const Obstacle obstacle = try_collapse(edge, cost);
+      any |= obstacle == Obstacle::kNone;
+      finish(edge, obstacle);
     }
-    if (!any)
-      break;  // obstacles depend on neighbours too, so what was refused is tried again as long as something moved
+  }
+  return any;
+}
+
+template <class Numbers, std::size_t C>
+void GroupSimplifier<Numbers, C>::finish(std::uint32_t edge, Obstacle obstacle) {
+  if (obstacle == Obstacle::kPutBack) return heap_.replace_top(price_);
+  heap_.pop();
+  if (obstacle == Obstacle::kNone) {
+    for (const std::uint32_t again : taken_up_) {
+      if (may_collapse(again)) heap_.push(weigh(again), again);
+    }
+  } else if (obstacle != Obstacle::kNoEdge) {
+    obstacles_.add(obstacle);
+    refused_.add(edge, mesh_.ends(edge));
   }
 }
 
-template <class Real, std::size_t C>
-void GroupSimplifier<Real, C>::seed_candidates() {
-  std::vector<EdgeUse> uses;
-  std::swap(uses, edge_uses_);
-  if (uses.empty()) uses = sorted_edge_uses(mesh_);
-  for (std::size_t i = 0; i < uses.size(); ++i) {
-    if (i > 0 && uses[i].a == uses[i - 1].a && uses[i].b == uses[i - 1].b) continue;
-    if (is_free_to_collapse(uses[i].a, uses[i].b)) queue_.append(make_candidate(uses[i].a, uses[i].b));
-  }
-  queue_.order();
-}
-
-template <class Real, std::size_t C>
-bool GroupSimplifier<Real, C>::is_free_to_collapse(std::uint32_t a, std::uint32_t b) {
-  if (locks_.is_vertex_locked[a] == 0 || locks_.is_vertex_locked[b] == 0) return true;
-  ++obstacles_[static_cast<std::size_t>(Obstacle::kLocked)];
+template <class Numbers, std::size_t C>
+bool GroupSimplifier<Numbers, C>::may_collapse(std::uint32_t edge) {
+  const CollapseMesh::Ends& ends = mesh_.ends(edge);
+  if (ends[0] == CollapseMesh::kEnd) return false;
+  if (!is_locked(ends[0]) || !is_locked(ends[1])) return true;
+  obstacles_.add(Obstacle::kLocked);
   return false;
 }
 
-template <class Real, std::size_t C>
-Candidate GroupSimplifier<Real, C>::make_candidate(std::uint32_t a, std::uint32_t b) {
-  if (a > b) std::swap(a, b);
-  star_.a.vertex = a;
-  star_.b.vertex = b;
-  BasicQuadric<Real> total = surface_.around(a, b);
-  double fixed_error = 0.0;
-  if (classes_.needs_corners(a, b)) {
-    gather_corners(mesh_, a, b, star_);
-    classes_.collect(mesh_, locks_, star_);
-    fixed_error = add_classes(total);
-  } else if (attributes_.count() > 0) {
-    fixed_error = attributes_.add_pair(total, classes_.pair_of(locks_, a, b), given_place(a, b));
+/// The cost of the edge; where its vertex would go is noted.
+template <class Numbers, std::size_t C>
+double GroupSimplifier<Numbers, C>::weigh(std::uint32_t edge) {
+  const CollapseMesh::Ends& ends = mesh_.ends(edge);
+  const auto [cost, place] = costs_.weigh(ends);
+  candidates_[edge] = {versions_of(ends), false, Vec3f(place)};
+  return cost;
+}
+
+template <class Numbers, std::size_t C>
+Obstacle GroupSimplifier<Numbers, C>::try_collapse(std::uint32_t edge, float cost) {
+  Obstacle obstacle = gather(mesh_.ends(edge));
+  if (obstacle != Obstacle::kNone) return obstacle;
+  costs_.collect_classes(star_);
+  if (!find_target(candidates_[edge])) return Obstacle::kTopology;
+  obstacle = ask_guards(candidates_[edge], cost);
+  if (obstacle != Obstacle::kNone) return obstacle;
+  obstacle = ask_price(cost);
+  if (obstacle != Obstacle::kNone) return obstacle;
+  collapse();
+  return Obstacle::kNone;
+}
+
+/// Of the two ends the locked one, if any, is a.
+template <class Numbers, std::size_t C>
+Obstacle GroupSimplifier<Numbers, C>::gather(const CollapseMesh::Ends& ends) {
+  const std::size_t first = is_locked(ends[1]) ? 1 : 0;
+  mesh_.gather(ends[first], star_.a);
+  mesh_.gather(ends[1 - first], star_.b);
+  if (star_.a.is_hub || star_.b.is_hub) return Obstacle::kCrowded;
+  switch (gather_star(mesh_, marks_, star_)) {
+    case Gathered::kTooMany: return Obstacle::kCrowded;
+    case Gathered::kNoTriangle: return Obstacle::kNoEdge;
+    case Gathered::kStar: break;
   }
-  const Placement placement = place(a, b, total, fixed_error);
-  last_placed_ = {placement.position, a, b, versions_of(a, b)};
-  return {placement.cost, a, b, versions_of(a, b)};
+  return Obstacle::kNone;
 }
 
-/// What the wedge classes of the star add to it. \pre they are collected
-template <class Real, std::size_t C>
-double GroupSimplifier<Real, C>::add_classes(BasicQuadric<Real>& total) const {
-  return attributes_.add_classes(total, classes_.classes(), given_place(star_.a.vertex, star_.b.vertex));
-}
-
-/// Where the vertex of a candidate goes that is tried, and its wedge classes with it: what comes up is often what was
-/// weighed last. \pre the star's corners are gathered
-template <class Real, std::size_t C>
-Vec3d GroupSimplifier<Real, C>::place_again(std::uint32_t a, std::uint32_t b) {
-  classes_.collect(mesh_, locks_, star_);
-  if (locks_.is_vertex_locked[a] != 0 || locks_.is_vertex_locked[b] != 0) return given_place(a, b);
-  if (last_placed_.a == a && last_placed_.b == b && last_placed_.versions == versions_of(a, b)) {
-    return last_placed_.position;
+template <class Numbers, std::size_t C>
+bool GroupSimplifier<Numbers, C>::find_target(const Candidate& candidate) {
+  const Vec3i &at_a = places_.on_grid(star_.a.vertex), &at_b = places_.on_grid(star_.b.vertex);
+  target_ = at_a;
+  if (!is_locked(star_.a.vertex)) {
+    target_ = places_.to_grid(Vec3d(candidate.place));
+    if (own_places_ && !own_places_->find_free(at_a, at_b, target_)) return false;
   }
-  BasicQuadric<Real> total = surface_.around(a, b);
-  const double fixed_error = add_classes(total);
-  return place(a, b, total, fixed_error).position;
-}
-
-template <class Real, std::size_t C>
-std::uint32_t GroupSimplifier<Real, C>::vertex_of(std::uint32_t joined) {
-  while (joined_into_[joined] != joined) {
-    joined_into_[joined] = joined_into_[joined_into_[joined]];
-    joined = joined_into_[joined];
-  }
-  return joined;
-}
-
-template <class Real, std::size_t C>
-bool GroupSimplifier<Real, C>::refresh(Candidate& candidate) {
-  const std::uint32_t a = vertex_of(candidate.a), b = vertex_of(candidate.b);
-  if (a == b || !is_free_to_collapse(a, b)) return false;
-  candidate = make_candidate(a, b);
+  star_.target = places_.to_frame(target_);
   return true;
 }
 
-template <class Real, std::size_t C>
-void GroupSimplifier<Real, C>::set_aside(const Candidate& refused) {
-  refused_[refused.a].push_back(refused.b);
-  refused_[refused.b].push_back(refused.a);
-}
-
-/// What stood in the way depends on what is around the vertex, which has changed.
-template <class Real, std::size_t C>
-void GroupSimplifier<Real, C>::take_up_again(std::uint32_t vertex) {
-  const std::uint32_t a = vertex_of(vertex);
-  std::vector<std::uint32_t>& others = refused_[vertex];
-  // Each refusal is noted at both ends: without this, what one of them takes up again would be twice as much each time.
-  for (std::uint32_t& other : others) other = vertex_of(other);
-  std::sort(others.begin(), others.end());
-  others.erase(std::unique(others.begin(), others.end()), others.end());
-  for (const std::uint32_t b : others) {
-    if (a != b && is_free_to_collapse(a, b)) queue_.push(make_candidate(a, b));
-  }
-  others.clear();
-}
-
-/// Where the joined vertex goes and what it costs there: `total`, and the error of wedges whose values may not change
-/// (only where the place is given).
-template <class Real, std::size_t C>
-typename GroupSimplifier<Real, C>::Placement GroupSimplifier<Real, C>::place(std::uint32_t a, std::uint32_t b,
-                                                                             BasicQuadric<Real>& total,
-                                                                             double fixed_error) const {
-  const Vec3d& pa = places_[a];
-  const Vec3d& pb = places_[b];
-  const bool is_place_given = locks_.is_vertex_locked[a] != 0 || locks_.is_vertex_locked[b] != 0;
-  Placement placement;
-  placement.position = is_place_given ? given_place(a, b) : place_vertex(total, pa, pb, options_.fallback);
-  const Vec3d edge = pb - pa;
-  placement.cost = cost_of_collapse(total, placement.position, fixed_error, glm::dot(edge, edge));
-  return placement;
-}
-
-template <class Real, std::size_t C>
-typename GroupSimplifier<Real, C>::Obstacle GroupSimplifier<Real, C>::try_collapse(const Candidate& candidate) {
-  std::uint32_t a = candidate.a;
-  std::uint32_t b = candidate.b;
-  gather_corners(mesh_, a, b, star_);
-  if (!has_shared_triangle(mesh_, star_)) return Obstacle::kNoEdge;
-  star_.target = place_again(a, b);
-  for (const WedgeClass& joined : classes_.classes()) {
-    if (!attributes_.agree(joined, locks_)) return Obstacle::kSeams;
-  }
-  const bool is_free = locks_.is_vertex_locked[a] == 0 && locks_.is_vertex_locked[b] == 0;
-  if (is_free) {
-    Vec3i place = places_.to_grid(star_.target);
-    if (own_places_ && !own_places_->find_free(places_.on_grid(a), places_.on_grid(b), place)) {
-      return Obstacle::kTopology;
-    }
-    star_.target = places_.to_frame(place);
-  }
+template <class Numbers, std::size_t C>
+Obstacle GroupSimplifier<Numbers, C>::ask_guards(Candidate& candidate, float cost) {
   if (!keeps_shared_edges(mesh_, locks_, star_)) return Obstacle::kLocked;
-  if (attributes_.count() > 0 &&
-      (falls_together(mesh_, locks_, places_, star_) || !keeps_shared_corners(mesh_, locks_, classes_, star_))) {
-    return Obstacle::kSeams;
+  if (costs_.has_attributes()) {
+    const WedgeClasses& classes = costs_.classes();
+    if (!costs_.attributes().agree(classes, locks_) || falls_together(locks_, places_, star_)) return Obstacle::kSeams;
+    if (costs_.has_seams() && !keeps_shared_corners(mesh_, locks_, classes, star_)) return Obstacle::kSeams;
   }
-  bool breaks_topology = false;
-  if (!keeps_topology(mesh_, is_border_, marks_, star_)) {
+  breaks_topology_ = !keeps_topology(is_border_, star_);
+  if (breaks_topology_) {
     if (!options_.may_relax_topology || options_.keep_topology) return Obstacle::kTopology;
     if (!candidate.may_break_topology) {
-      queue_.push({kTopologyPrice * candidate.cost, a, b, versions_of(a, b), true});
+      candidate.may_break_topology = true;
+      price_ = kTopologyPrice * double{cost};
       return Obstacle::kPutBack;
     }
-    breaks_topology = true;
   }
   if (options_.keep_topology && !keeps_to_itself(mesh_, locks_, star_)) return Obstacle::kTopology;
-  if (!are_flips_relaxed_ && turns_over(mesh_, places_, star_)) return Obstacle::kFlips;
-  gather_outer_edges(mesh_, breaks_topology || has_broken_topology_, star_);
-  const double price = price_of(candidate);
-  if (price > candidate.cost) {
-    queue_.push({price, a, b, versions_of(a, b), candidate.may_break_topology});
-    return Obstacle::kPutBack;
-  }
-  has_broken_topology_ |= breaks_topology;
-  if (locks_.is_vertex_locked[b] != 0) std::swap(a, b);
-  collapse(a, b);
-  return Obstacle::kNone;
+  if (breaks_topology_ || has_broken_topology_) move_sheets_out(star_);
+  gather_facets(mesh_, places_, star_);
+  return !are_flips_relaxed_ && turns_over(star_) ? Obstacle::kFlips : Obstacle::kNone;
 }
 
 /// What leaving the old surface behind, or reaching beyond it, costs, and moving what is promised of what is painted:
 /// where that is far more than the quadrics say, the collapse waits for its turn at that price.
-template <class Real, std::size_t C>
-double GroupSimplifier<Real, C>::price_of(const Candidate& candidate) {
-  const double left_behind2 = left_behind_.weigh(mesh_, places_, star_, options_.keep_area);
-  const double mean_weight = 2.0 * surface_.total_weight() / mesh_.alive_count();
-  const double weight = surface_.weight(candidate.a) + surface_.weight(candidate.b);
-  const double price_of_distance2 = kGuardShare * std::sqrt(std::max(mean_weight, weight));
-  const double price = price_of_distance2 * left_behind2;
-  if (price > candidate.cost) return price;
+template <class Numbers, std::size_t C>
+Obstacle GroupSimplifier<Numbers, C>::ask_price(float cost) {
+  const std::uint32_t a = star_.a.vertex, b = star_.b.vertex;
+  const double weight = costs_.surface().weight(a) + costs_.surface().weight(b);
+  const double mean_weight = 2.0 * costs_.surface().total_weight() / mesh_.alive_count();
+  const double per_distance2 = kGuardShare * std::sqrt(std::max(mean_weight, weight));
+  const auto is_too_much = [&](double price) {
+    price_ = price;
+    return EdgeHeap::key_of(price) > cost;
+  };
+  const auto affordable2 = [&](double per2) { return per2 > 0.0 ? double{cost} / per2 : 0.0; };
+
+  const bool is_manifold = is_manifold_ && !breaks_topology_, is_on_border = is_border_[a] != 0 && is_border_[b] != 0;
+  const std::optional<float> left2 =
+      left_behind_.weigh(mesh_, places_, marks_, star_, {is_manifold, is_on_border, options_.keep_area});
+  if (!left2) return Obstacle::kCrowded;
+  if (is_too_much(per_distance2 * double{*left2})) return Obstacle::kPutBack;
   // First what raises the price most, where it counts at all.
   if (painted_.is_on()) {
-    const double price_of_painted2 = kPaintedFactor * price_of_distance2;
-    const double affordable2 = price_of_painted2 > 0.0 ? candidate.cost / price_of_painted2 : 0.0;
-    const double moved2 = painted_.distance2(mesh_, places_, star_, classes_.classes(), attributes_, affordable2);
-    if (moved2 > affordable2) return price_of_painted2 * moved2;
+    const double per_painted2 = kPaintedFactor * per_distance2;
+    const double moved2 = painted_.distance2(mesh_, places_, locks_, star_, costs_.classes(), costs_.attributes(),
+                                             affordable2(per_painted2));
+    if (is_too_much(per_painted2 * moved2)) return Obstacle::kPutBack;
   }
-  const double affordable2 = price_of_distance2 > 0.0 ? candidate.cost / price_of_distance2 : 0.0;
-  const double reached2 = new_surface_.distance2(mesh_, places_, star_, affordable2);
-  return reached2 > affordable2 ? price_of_distance2 * reached2 : price;
+  const auto enough = static_cast<float>(affordable2(per_distance2));
+  const float reached2 = new_surface_distance2(mesh_, places_, star_, enough);
+  return reached2 > enough && is_too_much(per_distance2 * double{reached2}) ? Obstacle::kPutBack : Obstacle::kNone;
 }
 
-/// Joins b into a at the star's target. The star and the wedge classes are those of the pair.
-template <class Real, std::size_t C>
-void GroupSimplifier<Real, C>::collapse(std::uint32_t a, std::uint32_t b) {
-  error_ = std::max(error_, surface_.join(a, b, star_.target));
+/// b becomes a.
+template <class Numbers, std::size_t C>
+void GroupSimplifier<Numbers, C>::collapse() {
+  const std::uint32_t a = star_.a.vertex, b = star_.b.vertex;
+  has_broken_topology_ |= breaks_topology_;
+  is_manifold_ &= !breaks_topology_;
+  error2_ = std::max(error2_, costs_.join(star_));
   left_behind_.join(a, b);
   is_border_[a] |= is_border_[b];
-  const Vec3i place_a = places_.on_grid(a), place_b = places_.on_grid(b);
-  if (locks_.is_vertex_locked[a] == 0) places_.move(a, star_.target);
-  if (own_places_) own_places_->join(place_a, place_b, places_.on_grid(a));
-  for (const WedgeClass& c : classes_.classes()) {
-    attributes_.join(c, places_[a]);
-    relabel_wedges(mesh_, star_, c);
+  if (own_places_) own_places_->join(places_.on_grid(a), places_.on_grid(b), target_);
+  places_.move(a, target_);
+  for (std::size_t k = 0; k < star_.sheets().size(); k += 2) {
+    error2_ = std::max(error2_, height2_of_sheet(mesh_, places_, star_, star_.sheets()[k], true));
   }
-  mesh_.merge_vertices(a, b);
-  joined_into_[b] = a;
-  ++version_[a];
-  ++version_[b];
-
-  if (has_broken_topology_) error_ = std::max(error_, left_behind_.drop_sheets(mesh_, places_, a));
-  joined_.vertex = a;
-  mesh_.corners_of(a, joined_.corners);
-  classes_.update(mesh_, joined_);
-  if (joined_.corners.empty()) error_ = std::max(error_, left_behind_.size(a));
-  take_up_again(a);
-  take_up_again(b);
+  mesh_.join(star_.a, star_.b, star_.gone(), star_.on_edge, is_manifold_);
+  costs_.update(star_);
+  tell_what_vanished();
+  version_[a] += version_[b] + 1;
+  taken_up_.clear();
+  refused_.take(a, taken_up_);
+  refused_.take(b, taken_up_);
 }
 
-template <class Real, std::size_t C>
-StuckReason GroupSimplifier<Real, C>::reason_for_stopping() const {
-  if (mesh_.alive_count() <= options_.target_triangles) return StuckReason::kNotStuck;
-  const auto largest = std::max_element(obstacles_.begin() + 1, obstacles_.begin() + 5);
-  if (static_cast<Obstacle>(largest - obstacles_.begin()) != Obstacle::kLocked) {
-    // A piece keeps two triangles where it is closed: so many leave no room for the target, whatever refuses the last.
-    if (2 * count_pieces(mesh_, places_.size()) > options_.target_triangles) return StuckReason::kComponents;
-  }
-  if (*largest == 0) return StuckReason::kTooSmall;
-  switch (static_cast<Obstacle>(largest - obstacles_.begin())) {
-    case Obstacle::kLocked: return StuckReason::kLocked;
-    case Obstacle::kFlips: return StuckReason::kFlips;
-    case Obstacle::kSeams: return StuckReason::kSeams;
-    case Obstacle::kTopology: return StuckReason::kTopology;
-    case Obstacle::kNone:
-    case Obstacle::kPutBack:
-    case Obstacle::kNoEdge: break;
-  }
-  return StuckReason::kTooSmall;
-}
-
-/// Two vertices may have come to lie on one point of the grid. A triangle with both has no area and no border by then.
-template <class Real, std::size_t C>
-bool GroupSimplifier<Real, C>::has_corners_in_one_place(std::uint32_t triangle) const {
-  const Vec3i& p = places_.on_grid(mesh_.vertex(3 * triangle));
-  const Vec3i& q = places_.on_grid(mesh_.vertex(3 * triangle + 1));
-  const Vec3i& r = places_.on_grid(mesh_.vertex(3 * triangle + 2));
-  return p == q || q == r || r == p;
-}
-
-template <class Real, std::size_t C>
-SimplifyResult GroupSimplifier<Real, C>::result() const {
-  SimplifyResult out;
-  out.quadric_error = error_ * places_.scale() * input_.grid.step();
-  out.reason = reason_for_stopping();
-  const bool has_attributes = attributes_.count() > 0;  // without them a position is its own wedge
-  std::vector<std::uint32_t> new_position(places_.size(), kNoId);
-  // A wedge may have come to serve one vertex only, so a map per wedge is enough.
-  std::vector<std::uint32_t> new_wedge(has_attributes ? input_.wedge_position.size() : places_.size(), kNoId);
-  for (std::uint32_t t = 0; t < mesh_.triangle_count(); ++t) {
-    if (!mesh_.is_alive(t) || has_corners_in_one_place(t)) continue;
-    WedgeTriangle triangle{};
-    for (std::uint32_t k = 0; k < 3; ++k) {
-      const std::uint32_t v = mesh_.vertex(3 * t + k);
-      const std::uint32_t w = has_attributes ? mesh_.wedge(3 * t + k) : v;
-      if (new_position[v] == kNoId) {
-        new_position[v] = static_cast<std::uint32_t>(out.positions.size());
-        out.positions.push_back(places_.on_grid(v));
-        out.witnesses.push_back(left_behind_.witnesses(v));
-      }
-      if (new_wedge[w] == kNoId) {
-        new_wedge[w] = static_cast<std::uint32_t>(out.wedge_position.size());
-        out.wedge_position.push_back(new_position[v]);
-        if (has_attributes) attributes_.write(w, locks_.is_wedge_locked[w] != 0, out.wedge_attributes);
-      }
-      triangle[k] = new_wedge[w];
+/// Pieces and sheets that are no more were as large as what their vertices stood for.
+template <class Numbers, std::size_t C>
+void GroupSimplifier<Numbers, C>::tell_what_vanished() {
+  if (star_.outer_count == 0) error2_ = std::max(error2_, left_behind_.size2(star_.a.vertex, places_));
+  for (const std::uint32_t t : star_.sheets()) {
+    for (std::uint32_t corner = 3 * t; corner < 3 * t + 3; ++corner) {
+      const std::uint32_t v = mesh_.vertex(corner);
+      const bool has_corners = mesh_.any_corner(v, [](std::uint32_t) { return true; });
+      if (v != star_.b.vertex && !has_corners) error2_ = std::max(error2_, left_behind_.size2(v, places_));
     }
-    out.triangles.push_back(triangle);
-    out.triangle_material.push_back(input_.triangle_material[t]);
   }
+}
+
+template <class Numbers, std::size_t C>
+SimplifyResult GroupSimplifier<Numbers, C>::result() const {
+  SimplifyResult out =
+      write_group(input_, mesh_, grown_ ? *grown_ : places_, left_behind_,
+                  [&](std::uint32_t v, std::uint32_t wedge, std::vector<float>& to) {
+                    costs_.attributes().write(wedge, locks_.is_wedge_locked[wedge] != 0, places_[v], to);
+                  });
+  out.quadric_error = std::sqrt(error2_) * places_.scale() * input_.grid.step();
+  if (mesh_.alive_count() > options_.target_triangles) {
+    out.reason = obstacles_.reason(count_pieces(mesh_, places_.size()), options_.target_triangles);
+  }
+  out.crowded = obstacles_.count(Obstacle::kCrowded);
   return out;
 }
 

@@ -36,26 +36,27 @@ double weight_between(const SimplifyInput& input, const SimplifyOptions& options
 
 }  // namespace
 
-HeldEdges find_held_edges(const SimplifyInput& input, const SimplifyOptions& options, const CollapseMesh& mesh) {
+HeldEdges find_held_edges(const SimplifyInput& input, const SimplifyOptions& options, const CollapseMesh& mesh,
+                          std::span<const EdgeUse> uses) {
   HeldEdges held;
   held.is_border.assign(input.positions.size(), 0);
-  std::vector<EdgeUse> uses = sorted_edge_uses(mesh);
   for (std::size_t i = 0; i < uses.size();) {
     std::size_t end = i + 1;
     while (end < uses.size() && uses[end].a == uses[i].a && uses[end].b == uses[i].b) ++end;
-    const std::span<const EdgeUse> edge(&uses[i], end - i);
+    const std::span<const EdgeUse> edge = uses.subspan(i, end - i);
     i = end;
     const std::uint32_t a = edge[0].a, b = edge[0].b;
     int net = 0;
     for (const EdgeUse& use : edge) net += mesh.vertex(use.corner) == a ? 1 : -1;
-    held.has_free_border |= net != 0 && !(input.stays(a) && input.stays(b));
     const bool is_border = edge.size() != 2;
-    const double weight = is_border ? 1.0 : weight_between(input, options, mesh, edge);
+    if (edge.size() > 2 || (edge.size() == 2 && net != 0)) held.is_manifold = false;
     if (is_border) held.is_border[a] = held.is_border[b] = 1;
+    if (input.stays(a) && input.stays(b)) continue;
+    held.has_free_border |= net != 0;
+    const double weight = is_border ? 1.0 : weight_between(input, options, mesh, edge);
     if (!(weight > 0.0)) continue;
     for (const EdgeUse& use : edge) held.edges.push_back({a, b, use.corner / 3, weight, is_border});
   }
-  held.uses = std::move(uses);
   return held;
 }
 

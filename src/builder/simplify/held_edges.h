@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "builder/simplify/collapse_mesh.h"
@@ -23,10 +24,11 @@ struct HeldEdges {
   std::vector<HeldEdge> edges;          ///< ascending by a, b, and corners of the triangle
   std::vector<std::uint8_t> is_border;  ///< per vertex: on an edge that has not just two triangles
   bool has_free_border = false;         ///< an edge of the oriented border has an end that may move
-  std::vector<EdgeUse> uses;            ///< sorted_edge_uses() of the mesh
+  bool is_manifold = true;              ///< at most two triangles stand on an edge, and they run along it both ways
 };
 
+/// Nothing holds an edge between two ends that stay. `uses` are sorted_edge_uses() of the mesh.
 [[nodiscard]] HeldEdges find_held_edges(const SimplifyInput& input, const SimplifyOptions& options,
-                                        const CollapseMesh& mesh);
+                                        const CollapseMesh& mesh, std::span<const EdgeUse> uses);
 
 }  // namespace meshlode::builder

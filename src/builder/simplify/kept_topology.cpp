@@ -12,41 +12,28 @@ namespace meshlode::builder {
 
 namespace {
 
-bool has(const std::vector<std::uint32_t>& vertices, std::uint32_t v) {
-  return std::find(vertices.begin(), vertices.end(), v) != vertices.end();
+/// Of the ring's triangles those that have `v`.
+std::ptrdiff_t count_with(const CollapseMesh& mesh, const Ring& ring, std::uint32_t v) {
+  return std::count_if(ring.corners().begin(), ring.corners().end(),
+                       [&](std::uint32_t corner) { return mesh.has(corner / 3, v); });
 }
 
-/// For both ends of the edge, with the locked one first.
-bool joins_no_locked(const CollapseMesh& mesh, const GroupLocks& locks, const StarEnd& locked, const StarEnd& moved) {
-  const auto is_locked = [&](std::uint32_t v) { return locks.is_vertex_shared[v] != 0; };
-  const bool has_no_new_edge = std::all_of(moved.neighbors.begin(), moved.neighbors.end(), [&](std::uint32_t v) {
-    return v == locked.vertex || !is_locked(v) || has(locked.neighbors, v);
-  });
-  if (!has_no_new_edge) return false;
-  return std::none_of(moved.corners.begin(), moved.corners.end(), [&](std::uint32_t corner) {
+/// Whether b brings the shared a no edge to another shared vertex, and no triangle with two of them.
+bool joins_no_shared(const CollapseMesh& mesh, const GroupLocks& locks, const CollapseStar& star) {
+  const auto is_shared = [&](std::uint32_t v) { return locks.is_vertex_shared[v] != 0; };
+  const auto is_neighbor_of_a = [&](std::uint32_t v) { return count_with(mesh, star.a, v) != 0; };
+  return std::none_of(star.b.corners().begin(), star.b.corners().end(), [&](std::uint32_t corner) {
     const auto [x, y] = mesh.others(corner);
-    return x != locked.vertex && y != locked.vertex && is_locked(x) && is_locked(y);
+    const bool is_new_edge = (x != star.a.vertex && is_shared(x) && !is_neighbor_of_a(x)) ||
+                             (y != star.a.vertex && is_shared(y) && !is_neighbor_of_a(y));
+    return is_new_edge || (x != star.a.vertex && y != star.a.vertex && is_shared(x) && is_shared(y));
   });
-}
-
-/// Of the end's triangles those that have `v`.
-std::size_t count_with(const CollapseMesh& mesh, const StarEnd& end, std::uint32_t v) {
-  return static_cast<std::size_t>(std::count_if(end.corners.begin(), end.corners.end(), [&](std::uint32_t corner) {
-    const auto [x, y] = mesh.others(corner);
-    return x == v || y == v;
-  }));
 }
 
 /// Whether the edge has one triangle, and that has no neighbour across its other edges either.
 bool is_lone_triangle(const CollapseMesh& mesh, const CollapseStar& star) {
-  if (count_with(mesh, star.a, star.b.vertex) != 1) return false;
-  for (const std::uint32_t corner : star.a.corners) {
-    const auto [x, y] = mesh.others(corner);
-    if (x != star.b.vertex && y != star.b.vertex) continue;
-    const std::uint32_t tip = x == star.b.vertex ? y : x;
-    return count_with(mesh, star.a, tip) == 1 && count_with(mesh, star.b, tip) == 1;
-  }
-  return false;
+  return star.on_edge == 1 && count_with(mesh, star.a, star.tips[0]) == 1 &&
+         count_with(mesh, star.b, star.tips[0]) == 1;
 }
 
 /// All that are at most a step off along each axis, the nearest first.
@@ -74,10 +61,7 @@ bool is_on_grid(const Vec3i& place) {
 
 bool keeps_to_itself(const CollapseMesh& mesh, const GroupLocks& locks, const CollapseStar& star) {
   if (is_lone_triangle(mesh, star)) return false;
-  const auto is_kept = [&](const StarEnd& locked, const StarEnd& moved) {
-    return locks.is_vertex_shared[locked.vertex] == 0 || joins_no_locked(mesh, locks, locked, moved);
-  };
-  return is_kept(star.a, star.b) && is_kept(star.b, star.a);
+  return locks.is_vertex_shared[star.a.vertex] == 0 || joins_no_shared(mesh, locks, star);
 }
 
 std::size_t HashOfPlace::operator()(const Vec3i& place) const {

@@ -27,7 +27,7 @@
 namespace meshlode::builder {
 
 /// Whether the collapse makes no edge between two shared vertices, no triangle of three, and does not take the last
-/// triangle of a piece. \pre keeps_topology() holds and has gathered the neighbours of both ends
+/// triangle of a piece. As in guards.h a is the locked end, if one is. \pre keeps_topology() holds
 [[nodiscard]] bool keeps_to_itself(const CollapseMesh& mesh, const GroupLocks& locks, const CollapseStar& star);
 
 struct HashOfPlace {

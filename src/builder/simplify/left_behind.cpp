@@ -2,172 +2,167 @@
 #include "builder/simplify/left_behind.h"
 
 #include <algorithm>
-#include <array>
 #include <limits>
+#include <numeric>
+#include <utility>
 
 #include "builder/simplify/point_triangle.h"
 
 namespace meshlode::builder {
 
-namespace {
-
-/// Equals stay in order. Mostly there are half a dozen, and std::stable_sort would allocate.
-void sort_farthest_first(std::vector<WeighedWitness>& weighed) {
-  constexpr std::size_t kFew = 32;
-  if (weighed.size() > kFew) {
-    std::stable_sort(weighed.begin(), weighed.end(),
-                     [](const auto& x, const auto& y) { return x.distance2 > y.distance2; });
-    return;
-  }
-  for (std::size_t i = 1; i < weighed.size(); ++i) {
-    const WeighedWitness one = weighed[i];
-    std::size_t at = i;
-    for (; at > 0 && weighed[at - 1].distance2 < one.distance2; --at) weighed[at] = weighed[at - 1];
-    weighed[at] = one;
-  }
+LeftBehind::LeftBehind(std::vector<Witnesses> witnesses, const std::vector<Vec3i>& positions)
+    : positions_(positions), witnesses_(std::move(witnesses)), next_joined_(positions.size()) {
+  std::iota(next_joined_.begin(), next_joined_.end(), 0U);
 }
 
-}  // namespace
-
-LeftBehind::LeftBehind(std::vector<Witnesses> witnesses, const GroupPlaces& places)
-    : witnesses_(std::move(witnesses)), merged_(places.size()), vertex_stamp_(places.size(), 0) {
-  for (std::uint32_t v = 0; v < places.size(); ++v) merged_[v] = {places[v], places[v]};
+/// A neighbour that no triangle of the new star has: an edge to it is not covered any more, or all of it goes. The
+/// distance is that of the middle of what goes. False where too many vertices go.
+bool LeftBehind::look_at(const CollapseMesh& mesh, const GroupPlaces& places, const CollapseStar& star,
+                         std::uint32_t vertex) {
+  const bool has_others = mesh.any_corner(vertex, [&](std::uint32_t corner) {
+    return !mesh.has(corner / 3, star.a.vertex) && !mesh.has(corner / 3, star.b.vertex);
+  });
+  const Vec3d away = places[vertex] - star.target;
+  largest2_ = std::max(largest2_, static_cast<float>((has_others ? 0.25 : 1.0) * glm::dot(away, away)));
+  if (has_others) return true;
+  if (vertex_count_ == kMostVertices) return false;
+  vertices_[vertex_count_++] = vertex;
+  return true;
 }
 
-/// What goes without a vertex noticing: an edge to a neighbour that no triangle covers any more, a dropped sheet, and
-/// neighbours whose triangles all go (their witnesses are weighed too). Returns the largest squared distance at which
-/// such points are left, taken to the middle of what goes.
-double LeftBehind::collect_vanishing(CollapseMesh& mesh, const GroupPlaces& places, const CollapseStar& star) {
-  const std::uint32_t a = star.a.vertex, b = star.b.vertex;
-  vanishing_.clear();
-  double lost2 = 0.0;
-  const std::uint64_t stamp = ++stamp_;  // of vertices that stay in the star, or have been looked at
-  for (const CollapseStar::OuterEdge& edge : star.outer) vertex_stamp_[edge.x] = vertex_stamp_[edge.y] = stamp;
-  for (const StarEnd* end : {&star.a, &star.b}) {
-    for (const std::uint32_t corner : end->corners) {
+bool LeftBehind::find_among_neighbors(const CollapseMesh& mesh, const GroupPlaces& places, VertexMarks& marks,
+                                      const CollapseStar& star) {
+  marks.start_search();
+  for (const CollapseStar::OuterEdge& edge : star.outer()) {
+    marks.mark(edge.x);
+    marks.mark(edge.y);
+  }
+  for (const Ring* end : {&star.a, &star.b}) {
+    for (const std::uint32_t corner : end->corners()) {
       for (const std::uint32_t v : mesh.others(corner)) {
-        if (v == a || v == b || vertex_stamp_[v] == stamp) continue;
-        vertex_stamp_[v] = stamp;
-        mesh.corners_of(v, corners_);
-        const bool has_others = std::any_of(corners_.begin(), corners_.end(), [&](std::uint32_t c) {
-          const auto [x, y] = mesh.others(c);
-          return x != a && x != b && y != a && y != b;
-        });
-        const Vec3d uncovered = places[v] - star.target;
-        lost2 = std::max(lost2, (has_others ? 0.25 : 1.0) * glm::dot(uncovered, uncovered));
-        if (!has_others) vanishing_.push_back(v);
+        if (v == star.a.vertex || v == star.b.vertex || marks.is_marked_once(v)) continue;
+        marks.mark(v);
+        if (!look_at(mesh, places, star, v)) return false;
       }
     }
   }
-  for (const CollapseStar::OuterEdge& edge : star.sheets) {
-    const Vec3d base = places[edge.y] - places[edge.x];
-    const Vec3d cross = glm::cross(base, star.target - places[edge.x]);
-    const double base2 = glm::dot(base, base);
-    if (base2 > 0.0) lost2 = std::max(lost2, 0.25 * glm::dot(cross, cross) / base2);
+  const std::span<const std::uint32_t> sheets = star.sheets();
+  for (std::size_t k = 0; k < sheets.size(); k += 2) {
+    const double height2 = height2_of_sheet(mesh, places, star, sheets[k], false);
+    largest2_ = std::max(largest2_, static_cast<float>(0.25 * height2));
   }
-  return lost2;
+  return true;
 }
 
-void LeftBehind::gather_facets(const GroupPlaces& places, const CollapseStar& star) {
-  facets_.start(star.target);
-  for (const CollapseStar::OuterEdge& edge : star.outer) facets_.add(star.target, places[edge.x], places[edge.y]);
-  facets_.finish();
+/// Under the link condition only a tip can go, of an edge of the border or of a piece that vanishes.
+bool LeftBehind::find_vanishing(const CollapseMesh& mesh, const GroupPlaces& places, VertexMarks& marks,
+                                const CollapseStar& star, const Asked& asked) {
+  if (!asked.is_manifold) return find_among_neighbors(mesh, places, marks, star);
+  if (!asked.is_on_border && star.outer_count > 0) return true;
+  for (std::size_t k = 0; k < star.on_edge; ++k) {
+    const std::uint32_t tip = star.tips[k];
+    const bool is_covered = std::any_of(star.outer().begin(), star.outer().end(),
+                                        [&](const auto& edge) { return edge.x == tip || edge.y == tip; });
+    if (!is_covered && !look_at(mesh, places, star, tip)) return false;
+  }
+  return true;
 }
 
-/// The largest squared distance from the vertex's witnesses to the new star.
-double LeftBehind::weigh_witnesses(std::uint32_t vertex, const GroupPlaces& places) {
-  const Witnesses& w = witnesses_[vertex];
-  double largest = 0.0;
-  for (std::uint32_t i = 0; i < w.count; ++i) {
-    const double nearest{facets_.distance2_to(places.to_frame(w.points[i]))};
-    weighed_.push_back({nearest, w.points[i], w.ids[i]});
-    largest = std::max(largest, nearest);
+/// The piece vanishes: what it leaves is as far off as the nearest of what stays. What is near the star comes first,
+/// and what is no farther than `enough` is not looked for any closer: of thousands of loose pieces each would look at
+/// all others else.
+float LeftBehind::distance2_to_rest(const CollapseMesh& mesh, const GroupPlaces& places, const CollapseStar& star,
+                                    const Vec3i& point, float enough) const {
+  const Vec3d p = places.to_frame(point);
+  double nearest = std::numeric_limits<double>::infinity();
+  const auto look_at = [&](std::uint32_t t) {
+    if (!mesh.is_alive(t) || mesh.has(t, star.a.vertex) || mesh.has(t, star.b.vertex)) return;
+    const Vec3d &a = places[mesh.vertex(3 * t)], &b = places[mesh.vertex(3 * t + 1)],
+                &c = places[mesh.vertex(3 * t + 2)];
+    nearest = std::min(nearest, distance2_to_facet(p, a, b, c));
+  };
+  const std::uint32_t first = star.gone()[0];
+  const auto count = static_cast<std::uint32_t>(mesh.triangle_count());
+  for (std::uint32_t step = 0; (step <= first || first + step < count) && !(nearest <= double{enough}); ++step) {
+    if (step <= first) look_at(first - step);
+    if (step > 0 && first + step < count) look_at(first + step);
   }
-  return largest;
+  return static_cast<float>(std::min(nearest, 1e30));
 }
 
-/// The largest squared distance from what is left behind to the group's triangles away from both vertices, or `least`
-/// if that is larger. What is no farther than the largest so far is not looked for any closer, and what is near the
-/// star comes first: of thousands of loose pieces each would look at all others else.
-double LeftBehind::distance2_to_rest(const CollapseMesh& mesh, const GroupPlaces& places, const CollapseStar& star,
-                                     double least) const {
-  double largest = least;
-  std::uint32_t middle = star.a.corners.empty() ? 0 : star.a.corners.front() / 3;
-  for (const WeighedWitness& witness : weighed_) {
-    const Vec3d p = places.to_frame(witness.point);
-    double nearest = std::numeric_limits<double>::infinity();
-    std::uint32_t at = middle;
-    const auto look_at = [&](std::uint32_t t) {
-      if (!mesh.is_alive(t)) return;
-      const std::array<std::uint32_t, 3> v{mesh.vertex(3 * t), mesh.vertex(3 * t + 1), mesh.vertex(3 * t + 2)};
-      const auto is_end = [&](std::uint32_t x) { return x == star.a.vertex || x == star.b.vertex; };
-      if (std::any_of(v.begin(), v.end(), is_end)) return;
-      const double distance2 = distance2_to_facet(p, places[v[0]], places[v[1]], places[v[2]]);
-      if (!(distance2 < nearest)) return;
-      nearest = distance2;
-      at = t;
-    };
-    const std::uint32_t first = middle;
-    const auto count = static_cast<std::uint32_t>(mesh.triangle_count());
-    for (std::uint32_t step = 0; (step <= first || first + step < count) && !(nearest <= largest); ++step) {
-      if (step <= first) look_at(first - step);
-      if (step > 0 && first + step < count) look_at(first + step);
-    }
-    middle = at;  // the next is not far off
-    largest = std::max(largest, nearest);
+MESHLODE_CLONED_FOR_AVX2
+void LeftBehind::weigh_witnesses(const CollapseMesh& mesh, const GroupPlaces& places, const CollapseStar& star,
+                                 std::uint32_t vertex) {
+  const Witnesses& witnesses = witnesses_[vertex];
+  const std::span<const FourFacets> facets = std::span(star.fresh).first(star.block_count());
+  for (std::uint32_t i = 0; i < witnesses.count; ++i) {
+    const float distance2 = facets.empty()
+                                ? distance2_to_rest(mesh, places, star, witnesses.points[i], largest2_)
+                                : distance2_to(facets, Vec3f(places.to_frame(witnesses.points[i]) - star.target));
+    std::uint32_t at = weighed_count_++;
+    for (; at > 0 && weighed_[at - 1].distance2 < distance2; --at) weighed_[at] = weighed_[at - 1];
+    weighed_[at] = {distance2, vertex, i};
+    largest2_ = std::max(largest2_, distance2);
   }
-  return largest;
 }
 
-double LeftBehind::weigh(CollapseMesh& mesh, const GroupPlaces& places, const CollapseStar& star, bool keep_area) {
-  const double lost2 = collect_vanishing(mesh, places, star);
-  weighed_.clear();
-  gather_facets(places, star);
-  double largest = weigh_witnesses(star.a.vertex, places);
-  largest = std::max(largest, weigh_witnesses(star.b.vertex, places));
-  for (const std::uint32_t v : vanishing_) largest = std::max(largest, weigh_witnesses(v, places));
-  if (!star.outer.empty()) return std::max(lost2, largest);
-  // The piece vanishes. Of foliage its size is what is lost: its neighbours grow instead. Else what it leaves is as far
-  // off as the nearest of what stays.
-  if (keep_area) {
-    const Box& at_a = merged_[star.a.vertex];
-    const Box& at_b = merged_[star.b.vertex];
-    const Box both{glm::min(at_a.low, at_b.low), glm::max(at_a.high, at_b.high)};
-    return std::max(lost2, both.diagonal() * both.diagonal());
+double LeftBehind::size2(std::uint32_t vertex, const GroupPlaces& places) const {
+  Vec3i low = positions_[vertex], high = low;
+  for (std::uint32_t v = next_joined_[vertex]; v != vertex; v = next_joined_[v]) {
+    low = glm::min(low, positions_[v]);
+    high = glm::max(high, positions_[v]);
   }
-  return std::max(lost2, std::min(distance2_to_rest(mesh, places, star, lost2), 1e30));
+  const Vec3d diagonal = Vec3d(high - low) / places.scale();
+  return glm::dot(diagonal, diagonal);
+}
+
+double LeftBehind::size2_of_both(const CollapseStar& star, const GroupPlaces& places) {
+  std::swap(next_joined_[star.a.vertex], next_joined_[star.b.vertex]);  // two rings are one
+  const double both2 = size2(star.a.vertex, places);
+  std::swap(next_joined_[star.a.vertex], next_joined_[star.b.vertex]);
+  return both2;
+}
+
+std::optional<float> LeftBehind::weigh(const CollapseMesh& mesh, const GroupPlaces& places, VertexMarks& marks,
+                                       const CollapseStar& star, const Asked& asked) {
+  vertices_[0] = star.a.vertex;
+  vertices_[1] = star.b.vertex;
+  vertex_count_ = 2;
+  weighed_count_ = 0;
+  largest2_ = 0.0F;
+  if (!find_vanishing(mesh, places, marks, star, asked)) return std::nullopt;
+  // Of foliage its size is what is lost: its neighbours grow instead.
+  if (star.outer_count == 0 && asked.keep_area) {
+    return std::max(largest2_, static_cast<float>(size2_of_both(star, places)));
+  }
+  for (std::uint32_t i = 0; i < vertex_count_; ++i) weigh_witnesses(mesh, places, star, vertices_[i]);
+  return largest2_;
 }
 
 void LeftBehind::join(std::uint32_t into, std::uint32_t from) {
-  sort_farthest_first(weighed_);
-  Witnesses& kept = witnesses_[into];
-  kept.count = static_cast<std::uint32_t>(std::min(weighed_.size(), Witnesses::kCapacity));
+  Witnesses kept;
+  kept.count = std::min<std::uint32_t>(weighed_count_, Witnesses::kCapacity);
   for (std::uint32_t i = 0; i < kept.count; ++i) {
-    kept.points[i] = weighed_[i].point;
-    kept.ids[i] = weighed_[i].id;
+    kept.points[i] = witnesses_[weighed_[i].vertex].points[weighed_[i].index];
+    kept.ids[i] = witnesses_[weighed_[i].vertex].ids[weighed_[i].index];
   }
-  merged_[into].low = glm::min(merged_[into].low, merged_[from].low);
-  merged_[into].high = glm::max(merged_[into].high, merged_[from].high);
+  witnesses_[into] = kept;
+  std::swap(next_joined_[into], next_joined_[from]);
 }
 
-double LeftBehind::drop_sheets(CollapseMesh& mesh, const GroupPlaces& places, std::uint32_t vertex) const {
-  std::vector<std::uint32_t> dropped, corners;
-  mesh.drop_opposite_pairs(vertex, dropped);
-  double lost = 0.0;
-  for (const std::uint32_t t : dropped) {
-    const std::array<std::uint32_t, 3> v{mesh.vertex(3 * t), mesh.vertex(3 * t + 1), mesh.vertex(3 * t + 2)};
-    const Vec3d e0 = places[v[1]] - places[v[0]];
-    const Vec3d e1 = places[v[2]] - places[v[1]];
-    const Vec3d e2 = places[v[0]] - places[v[2]];
-    const Vec3d cross = glm::cross(e0, e1);
-    const double longest2 = std::max({glm::dot(e0, e0), glm::dot(e1, e1), glm::dot(e2, e2)});
-    if (longest2 > 0.0) lost = std::max(lost, std::sqrt(glm::dot(cross, cross) / longest2));
-    for (const std::uint32_t corner_vertex : v) {
-      mesh.corners_of(corner_vertex, corners);
-      if (corners.empty()) lost = std::max(lost, size(corner_vertex));
-    }
+double height2_of_sheet(const CollapseMesh& mesh, const GroupPlaces& places, const CollapseStar& star,
+                        std::uint32_t triangle, bool is_least) {
+  Vec3d outer[2]{Vec3d(0.0), Vec3d(0.0)};
+  int count = 0;
+  for (std::uint32_t corner = 3 * triangle; corner < 3 * triangle + 3; ++corner) {
+    const std::uint32_t v = mesh.vertex(corner);
+    if (v != star.a.vertex && v != star.b.vertex && count < 2) outer[count++] = places[v];
   }
-  return lost;
+  const Vec3d base = outer[1] - outer[0], x = star.target - outer[0], y = star.target - outer[1];
+  const Vec3d cross = glm::cross(base, x);
+  double base2 = glm::dot(base, base);
+  if (is_least) base2 = std::max({base2, glm::dot(x, x), glm::dot(y, y)});
+  return count == 2 && base2 > 0.0 ? glm::dot(cross, cross) / base2 : 0.0;
 }
 
 }  // namespace meshlode::builder

@@ -6,67 +6,77 @@
 // of it.
 #pragma once
 
-#include <cmath>
+#include <array>
 #include <cstdint>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "builder/simplify/collapse_mesh.h"
 #include "builder/simplify/collapse_star.h"
 #include "builder/simplify/group_places.h"
 #include "builder/simplify/simplify.h"
-#include "builder/simplify/star_facets.h"
 
 namespace meshlode::builder {
 
-struct WeighedWitness {
-  double distance2;  ///< to the new star, in the frame
-  Vec3i point;
-  std::uint32_t id;
-};
-
-/// What each vertex stands for: its witnesses, and the box around all input vertices that came to it.
+/// What each vertex stands for: its witnesses, and all that was joined into it.
 class LeftBehind {
  public:
-  /// `witnesses` per vertex.
-  LeftBehind(std::vector<Witnesses> witnesses, const GroupPlaces& places);
+  /// Both of the ends and of the vertices that may go with them.
+  static constexpr std::size_t kMostVertices = 10;
 
-  /// The largest squared distance, in the frame, at which the collapse leaves what its vertices stand for: their
-  /// witnesses, and what goes without a vertex noticing. \pre star.outer and star.sheets are gathered
-  [[nodiscard]] double weigh(CollapseMesh& mesh, const GroupPlaces& places, const CollapseStar& star, bool keep_area);
+  /// `positions` must outlive this.
+  LeftBehind(std::vector<Witnesses> witnesses, const std::vector<Vec3i>& positions);
+
+  /// How the collapse is looked at.
+  struct Asked {
+    bool is_manifold = true;   ///< at most two triangles stand on an edge, and the link condition holds
+    bool is_on_border = true;  ///< both ends are
+    bool keep_area = false;
+  };
+  /// The largest squared distance at which the collapse leaves what its vertices stand for: of their witnesses, and of
+  /// what goes without a vertex noticing. None where more vertices would go with it than kMostVertices.
+  /// \pre the facets are gathered
+  [[nodiscard]] std::optional<float> weigh(const CollapseMesh& mesh, const GroupPlaces& places, VertexMarks& marks,
+                                           const CollapseStar& star, const Asked& asked);
 
   /// `into` stands for what `from` stood for too. Of the witnesses weighed last the farthest stay.
   void join(std::uint32_t into, std::uint32_t from);
 
-  /// Drops the pairs of triangles around the vertex that lie on each other. Such a sheet has no plane error, but it was
-  /// there: returns its smallest height, or the size of what stood behind vertices that go with it, in the frame.
-  [[nodiscard]] double drop_sheets(CollapseMesh& mesh, const GroupPlaces& places, std::uint32_t vertex) const;
-
   [[nodiscard]] const Witnesses& witnesses(std::uint32_t vertex) const { return witnesses_[vertex]; }
-  /// The diagonal of what the vertex stands for, in the frame.
-  [[nodiscard]] double size(std::uint32_t vertex) const { return merged_[vertex].diagonal(); }
+  /// The squared diagonal of the box around what the vertex stands for, in the frame.
+  [[nodiscard]] double size2(std::uint32_t vertex, const GroupPlaces& places) const;
 
  private:
-  struct Box {
-    Vec3d low, high;
-    [[nodiscard]] double diagonal() const { return std::sqrt(glm::dot(high - low, high - low)); }
+  struct Weighed {
+    float distance2;
+    std::uint32_t vertex, index;  ///< of the vertex's witnesses
   };
 
-  [[nodiscard]] double collect_vanishing(CollapseMesh& mesh, const GroupPlaces& places, const CollapseStar& star);
-  void gather_facets(const GroupPlaces& places, const CollapseStar& star);
-  /// \pre the facets are gathered
-  [[nodiscard]] double weigh_witnesses(std::uint32_t vertex, const GroupPlaces& places);
-  [[nodiscard]] double distance2_to_rest(const CollapseMesh& mesh, const GroupPlaces& places, const CollapseStar& star,
-                                         double least) const;
+  bool find_vanishing(const CollapseMesh& mesh, const GroupPlaces& places, VertexMarks& marks, const CollapseStar& star,
+                      const Asked& asked);
+  bool find_among_neighbors(const CollapseMesh& mesh, const GroupPlaces& places, VertexMarks& marks,
+                            const CollapseStar& star);
+  bool look_at(const CollapseMesh& mesh, const GroupPlaces& places, const CollapseStar& star, std::uint32_t vertex);
+  [[nodiscard]] float distance2_to_rest(const CollapseMesh& mesh, const GroupPlaces& places, const CollapseStar& star,
+                                        const Vec3i& point, float enough) const;
+  void weigh_witnesses(const CollapseMesh& mesh, const GroupPlaces& places, const CollapseStar& star,
+                       std::uint32_t vertex);
+  [[nodiscard]] double size2_of_both(const CollapseStar& star, const GroupPlaces& places);
 
+  const std::vector<Vec3i>& positions_;
   std::vector<Witnesses> witnesses_;
-  std::vector<Box> merged_;
+  std::vector<std::uint32_t> next_joined_;  ///< per vertex: rings of those that became one
   // Of the collapse weighed last.
-  std::vector<std::uint32_t> vanishing_;  ///< vertices that lose their last triangle with it
-  std::vector<WeighedWitness> weighed_;
-  StarFacets facets_;  ///< the new star
-  std::vector<std::uint32_t> corners_;
-  std::uint64_t stamp_ = 0;  ///< what is marked with it was marked in this search
-  std::vector<std::uint64_t> vertex_stamp_;
+  float largest2_ = 0.0F;
+  std::array<std::uint32_t, kMostVertices> vertices_;  ///< the ends, and what loses its last triangle with them
+  std::array<Weighed, kMostVertices * Witnesses::kCapacity> weighed_;  ///< the farthest first
+  std::uint32_t vertex_count_ = 0, weighed_count_ = 0;
 };
+
+/// The squared height of a triangle at an end of the star, with that corner at the target: of a sheet that is dropped,
+/// above its outer edge before the collapse, and the least of its heights after it, which is what is told.
+[[nodiscard]] double height2_of_sheet(const CollapseMesh& mesh, const GroupPlaces& places, const CollapseStar& star,
+                                      std::uint32_t triangle, bool is_least);
 
 }  // namespace meshlode::builder

@@ -11,13 +11,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <span>
 #include <vector>
 
 #include "builder/promise/product_point.h"
 #include "builder/simplify/attribute_quadrics.h"
 #include "builder/simplify/collapse_mesh.h"
 #include "builder/simplify/collapse_star.h"
+#include "builder/simplify/group_locks.h"
 #include "builder/simplify/group_places.h"
 #include "builder/simplify/simplify.h"
 #include "builder/simplify/wedge_classes.h"
@@ -28,6 +28,8 @@ namespace meshlode::builder {
 template <class Real, std::size_t Capacity>
 class PaintedGuard {
  public:
+  using Attributes = AttributeQuadrics<Real, Capacity>;
+
   PaintedGuard(const SimplifyInput& input, const PaintedUnits& units, const GroupPlaces& places) {
     const AttributeLayout& layout = input.layout;
     const double per_object = 1.0 / (places.scale() * input.grid.step());
@@ -44,20 +46,18 @@ class PaintedGuard {
   /// Whether anything but positions counts.
   [[nodiscard]] bool is_on() const { return is_on_; }
 
-  /// The largest squared distance, or some number up to `least` where none is larger. \pre is_on(); of the star outer
-  /// is gathered; `classes` are those of its collapse
-  [[nodiscard]] double distance2(const CollapseMesh& mesh, const GroupPlaces& places, const CollapseStar& star,
-                                 std::span<const WedgeClass> classes,
-                                 const AttributeQuadrics<Real, Capacity>& attributes, double least) {
-    join_classes(star, classes, attributes);
-    if (star.a.corners.size() + star.b.corners.size() > kMostFacets)
-      return hub_distance2(mesh, places, star, attributes);
-    gather_old(mesh, places, star, attributes);
-    gather_new(mesh, places, star, attributes);
+  /// The largest squared distance, or some number up to `least` where none is larger. \pre is_on(); `classes` are those
+  /// of the star's collapse
+  [[nodiscard]] double distance2(const CollapseMesh& mesh, const GroupPlaces& places, const GroupLocks& locks,
+                                 const CollapseStar& star, const WedgeClasses& classes, const Attributes& attributes,
+                                 double least) {
+    const View view{mesh, places, locks, star, classes, attributes};
+    join_classes(view);
+    gather_old(view);
+    gather_new(view);
     if (new_.empty()) return 0.0;  // the piece goes: a matter of positions
     double largest = least;
-    for (std::size_t i = 0; i < old_.size(); ++i) {
-      const Facet& facet = old_[i];
+    for (const Facet& facet : old_) {
       // Where triangles have no normals of their own, the corners around the ends are asked about by each of them.
       for (std::size_t k = 0; k < facet.asked; ++k) reach(facet.corners[k], new_, facet.twin, largest);
       reach(middle_of(facet.corners[0], facet.corners[1], facet.corners[2]), new_, facet.twin, largest);
@@ -73,10 +73,17 @@ class PaintedGuard {
  private:
   static constexpr std::size_t kDimensions = 3 + Capacity + 3;  ///< the last: normals of triangles
   static constexpr double kFarthest2 = 1e30;
-  static constexpr std::size_t kMostFacets = 256;
   static constexpr std::size_t kNoTwin = std::numeric_limits<std::size_t>::max();
   using Point = ProductPoint<kDimensions>;
-  using Values = std::array<double, Capacity>;
+  using Values = typename Attributes::Values;
+  struct View {
+    const CollapseMesh& mesh;
+    const GroupPlaces& places;
+    const GroupLocks& locks;
+    const CollapseStar& star;
+    const WedgeClasses& classes;
+    const Attributes& attributes;
+  };
 
   /// A triangle, from a corner at the end of the edge on.
   struct Facet {
@@ -126,22 +133,23 @@ class PaintedGuard {
   [[nodiscard]] Point point_of(const Vec3d& place, Values values) const {
     Point out{};
     for (int axis = 0; axis < 3; ++axis) out[static_cast<std::size_t>(axis)] = place[axis];
-    if (has_normals_) {
+    if constexpr (Capacity >= 3) {
       const double length = std::sqrt(values[0] * values[0] + values[1] * values[1] + values[2] * values[2]);
-      if (length > 0.0) {
-        for (std::size_t k = 0; k < 3; ++k) values[k] /= length;
-      }
+      for (std::size_t k = 0; k < 3 && has_normals_ && length > 0.0; ++k) values[k] /= length;
     }
     for (std::size_t j = 0; j < Capacity; ++j) {
       if (unit_[j] > 0.0 && std::isfinite(values[j])) out[3 + j] = unit_[j] * values[j];
     }
     return out;
   }
-  [[nodiscard]] Point point_of(const CollapseMesh& mesh, const GroupPlaces& places, std::uint32_t corner,
-                               const AttributeQuadrics<Real, Capacity>& attributes) const {
+  [[nodiscard]] Point point_of(const View& view, std::uint32_t corner) const {
+    const Vec3d& place = view.places[view.mesh.vertex(corner)];
     Values values{};
-    if (attributes.count() > 0) attributes.values_of(mesh.wedge(corner), values);
-    return point_of(places[mesh.vertex(corner)], values);
+    if (view.attributes.count() > 0) values_of(view, view.mesh.wedge(corner), place, values);
+    return point_of(place, values);
+  }
+  static void values_of(const View& view, std::uint32_t wedge, const Vec3d& place, Values& out) {
+    view.attributes.values_of(wedge, view.locks.is_wedge_locked[wedge] != 0, place, out);
   }
 
   /// The triangle's own normal, where that is what shades it.
@@ -159,21 +167,19 @@ class PaintedGuard {
     }
   }
 
-  void gather_old(const CollapseMesh& mesh, const GroupPlaces& places, const CollapseStar& star,
-                  const AttributeQuadrics<Real, Capacity>& attributes) {
+  void gather_old(const View& view) {
     old_.clear();
     wedges_.clear();
     place_of_.clear();
-    for (const StarEnd* end : {&star.a, &star.b}) {
-      for (const std::uint32_t corner : end->corners) {
+    for (const Ring* end : {&view.star.a, &view.star.b}) {
+      for (const std::uint32_t corner : end->corners()) {
         const std::uint32_t next = CollapseMesh::next_in_triangle(corner), last = CollapseMesh::next_in_triangle(next);
         Facet& facet = old_.emplace_back();
-        facet.corners = {point_of(mesh, places, corner, attributes), point_of(mesh, places, next, attributes),
-                         point_of(mesh, places, last, attributes)};
+        facet.corners = {point_of(view, corner), point_of(view, next), point_of(view, last)};
         shade_flat(facet);
         finish(facet);
         place_of_.push_back({corner, static_cast<std::uint32_t>(old_.size() - 1)});
-        const std::uint32_t wedge = attributes.count() > 0 ? mesh.wedge(corner) : mesh.vertex(corner);
+        const std::uint32_t wedge = view.attributes.count() > 0 ? view.mesh.wedge(corner) : view.mesh.vertex(corner);
         const bool is_new = std::find(wedges_.begin(), wedges_.end(), wedge) == wedges_.end();
         if (is_new) wedges_.push_back(wedge);
         facet.asked = flat_unit_ > 0.0 ? 3 : is_new ? 1 : 0;
@@ -182,48 +188,24 @@ class PaintedGuard {
     std::sort(place_of_.begin(), place_of_.end());
   }
 
-  /// What each class becomes.
-  void join_classes(const CollapseStar& star, std::span<const WedgeClass> classes,
-                    const AttributeQuadrics<Real, Capacity>& attributes) {
-    joined_.clear();
-    class_of_.clear();
-    for (const WedgeClass& joined : classes) {
-      for (const std::uint32_t wedge : joined.members) {
-        class_of_.push_back({wedge, static_cast<std::uint32_t>(joined_.size())});
-      }
+  /// What each class becomes, at the place of its first wedge.
+  void join_classes(const View& view) {
+    for (std::uint32_t i = 0; i < view.classes.count(); ++i) {
+      if (!view.classes.is_first(i)) continue;
       Values values{};
-      attributes.values_of(joined, star.target, values);
-      joined_.push_back(point_of(star.target, values));
+      view.attributes.values_of(view.classes, i, view.star.target, values);
+      joined_[i] = point_of(view.star.target, values);
     }
-    std::sort(class_of_.begin(), class_of_.end());
-  }
-
-  /// At a hub each point would look at thousands of triangles: no point moves farther than the corners at its ends do.
-  [[nodiscard]] double hub_distance2(const CollapseMesh& mesh, const GroupPlaces& places, const CollapseStar& star,
-                                     const AttributeQuadrics<Real, Capacity>& attributes) const {
-    double largest = 0.0;
-    for (const StarEnd* end : {&star.a, &star.b}) {
-      for (const std::uint32_t corner : end->corners) {
-        const Point before = point_of(mesh, places, corner, attributes);
-        const Point after = joined_point(mesh, corner, star, attributes);
-        double moved2 = 0.0;
-        for (std::size_t d = 0; d < kDimensions; ++d) moved2 += (after[d] - before[d]) * (after[d] - before[d]);
-        largest = std::max(largest, moved2);
-      }
-    }
-    return std::min(largest, kFarthest2);
   }
 
   /// \pre the old facets are gathered, and the classes joined
-  void gather_new(const CollapseMesh& mesh, const GroupPlaces& places, const CollapseStar& star,
-                  const AttributeQuadrics<Real, Capacity>& attributes) {
+  void gather_new(const View& view) {
     new_.clear();
-    for (const CollapseStar::OuterEdge& edge : star.outer) {
+    for (const CollapseStar::OuterEdge& edge : view.star.outer()) {
       Facet& facet = new_.emplace_back();
-      facet.corners[0] = joined_point(mesh, edge.corner, star, attributes);
       const std::uint32_t next = CollapseMesh::next_in_triangle(edge.corner);
-      facet.corners[1] = point_of(mesh, places, next, attributes);
-      facet.corners[2] = point_of(mesh, places, CollapseMesh::next_in_triangle(next), attributes);
+      facet.corners = {joined_point(view, edge.corner), point_of(view, next),
+                       point_of(view, CollapseMesh::next_in_triangle(next))};
       shade_flat(facet);
       finish(facet);
       const std::array<std::uint32_t, 2> key{edge.corner, 0};
@@ -232,25 +214,17 @@ class PaintedGuard {
     }
   }
 
-  /// A wedge that no triangle on the edge has keeps its values.
-  [[nodiscard]] Point joined_point(const CollapseMesh& mesh, std::uint32_t corner, const CollapseStar& star,
-                                   const AttributeQuadrics<Real, Capacity>& attributes) const {
-    Values values{};
-    if (attributes.count() == 0) return point_of(star.target, values);
-    const std::uint32_t wedge = mesh.wedge(corner);
-    const auto found = std::lower_bound(class_of_.begin(), class_of_.end(), std::array<std::uint32_t, 2>{wedge, 0});
-    if (found != class_of_.end() && (*found)[0] == wedge) return joined_[(*found)[1]];
-    attributes.values_of(wedge, values);
-    return point_of(star.target, values);
+  [[nodiscard]] Point joined_point(const View& view, std::uint32_t corner) const {
+    if (view.attributes.count() == 0) return point_of(view.star.target, Values{});
+    return joined_[view.classes.class_of(view.classes.find(view.mesh.wedge(corner)))];
   }
 
-  std::array<double, Capacity> unit_{};
+  std::array<double, Capacity == 0 ? 1 : Capacity> unit_{};
   double flat_unit_ = 0.0;
   bool is_on_ = false, has_normals_ = false;
   // Of the collapse weighed last.
   std::vector<Facet> old_, new_;
-  std::vector<Point> joined_;                           ///< what each class becomes
-  std::vector<std::array<std::uint32_t, 2>> class_of_;  ///< wedge and number of its class, ascending
+  std::array<Point, WedgeClasses::kMost> joined_;       ///< what each class becomes
   std::vector<std::array<std::uint32_t, 2>> place_of_;  ///< corner at the end and number of its old facet, ascending
   std::vector<std::uint32_t> wedges_;
 };

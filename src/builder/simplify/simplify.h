@@ -38,9 +38,6 @@ struct SimplifyOptions {
   /// Every cut of a manifold is one, and of its topology: the link condition is never broken, nor what it needs beyond
   /// the group (kept_topology.h). Not with keep_area, which moves vertices later.
   bool keep_topology = false;
-  // Off in studies alone (src/lab/experiment).
-  bool double_quadrics = true;   ///< quadrics are summed and solved in doubles; else in floats
-  bool fallback = true;          ///< an ill-conditioned or far-off minimum is not taken: a point of the edge is
   bool may_relax_flips = false;  ///< where the target is out of reach, go on without the flip test: a last resort
 };
 
@@ -85,6 +82,9 @@ struct SimplifyResult {
   std::vector<std::uint32_t> triangle_material;
   double quadric_error = 0.0;  ///< object units: root of the largest mean squared distance of a collapse
   StuckReason reason = StuckReason::kNotStuck;  ///< what stopped it short of the target: the commonest obstacle
+  /// So many collapses the last pass refused for their size alone: at a hub (Ring::kMost), of an edge with too many
+  /// triangles (CollapseStar::kMostOnEdge), or with too many vertices going at once (LeftBehind::kMostVertices).
+  std::uint64_t crowded = 0;
 };
 
 /// The result has the input's border (I6, docs/validation.md): edge by edge where both ends are locked, simplified

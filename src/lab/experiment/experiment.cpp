@@ -8,6 +8,7 @@
 
 #include "base/nearest_name.h"
 #include "base/vec.h"
+#include "lab/experiment/careless.h"
 #include "lab/experiment/openmesh_decimater.h"
 
 namespace meshlode::lab {
@@ -102,12 +103,7 @@ builder::BuildHooks hooks_of(const Experiment& experiment) {
     hooks.simplify_group = simplify_group_by_openmesh;
     hooks.heeds_all_options = false;
   } else {
-    hooks.simplify_group = [care](const builder::SimplifyInput& input, const builder::SimplifyOptions& asked) {
-      builder::SimplifyOptions options = asked;
-      options.double_quadrics = care.double_quadrics;
-      options.fallback = care.fallback;
-      return builder::simplify_group(input, options);
-    };
+    hooks.simplify_group = simplify_carelessly(care);
   }
   return hooks;
 }

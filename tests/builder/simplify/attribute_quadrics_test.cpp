@@ -31,48 +31,74 @@ SimplifyInput linear_texture(const DrawnMesh& drawn) {
 
 AttributeQuadrics<double, 3> quadrics_of(const DrawnMesh& drawn, const SimplifyInput& input,
                                          std::vector<double> scales) {
-  AttributeQuadrics<double, 3> attributes(input, std::move(scales));
+  AttributeQuadrics<double, 3> attributes(input, std::move(scales), true);
   for (std::uint32_t t = 0; t < drawn.mesh.triangle_count(); ++t) {
-    attributes.add_face({drawn.mesh.wedge(3 * t), drawn.mesh.wedge(3 * t + 1), drawn.mesh.wedge(3 * t + 2)},
-                        face_of(drawn.mesh, drawn.places, t));
+    (void)attributes.add_face({drawn.mesh.wedge(3 * t), drawn.mesh.wedge(3 * t + 1), drawn.mesh.wedge(3 * t + 2)},
+                              face_of(drawn.mesh, drawn.places, t));
   }
   return attributes;
 }
 
-std::vector<float> written(const AttributeQuadrics<double, 3>& attributes, std::uint32_t wedge,
+std::vector<float> written(const AttributeQuadrics<double, 3>& attributes, std::uint32_t wedge, const Vec3d& place,
                            bool is_locked = false) {
   std::vector<float> out;
-  attributes.write(wedge, is_locked, out);
+  attributes.write(wedge, is_locked, place, out);
   return out;
+}
+
+/// Locks no vertex, and of the wedges the one named.
+GroupLocks locks_of(const DrawnMesh& drawn, std::uint32_t wedge = kNoId) {
+  GroupLocks locks(std::vector<std::uint8_t>(drawn.points.size(), 0),
+                   std::vector<std::uint8_t>(drawn.wedge_position.size(), 0), drawn.wedge_position);
+  if (wedge != kNoId) locks.is_wedge_locked[wedge] = 1;
+  return locks;
+}
+WedgeClasses pair_of(const GroupLocks& locks, std::uint32_t x, std::uint32_t y) {
+  WedgeClasses classes;
+  classes.set_pair(locks, x, y);
+  return classes;
+}
+/// What the vertices count of the wedges, whatever their values.
+Quadric base_of(AttributeQuadrics<double, 3> attributes, const WedgeClasses& classes) {
+  Quadric total;
+  for (std::uint32_t i = 0; i < classes.count(); ++i) total += attributes.take_base(classes.wedge(i));
+  return total;
 }
 
 TEST(AttributeQuadrics, ALinearTextureMayBeMovedFreelyAndStaysWhereItWas) {
   const DrawnMesh drawn = closed_fan();
   const SimplifyInput input = linear_texture(drawn);
   AttributeQuadrics<double, 3> attributes = quadrics_of(drawn, input, {1.0, 1.0});
-  const std::vector<WedgeClass> classes{{{0, 1}}};
+  const WedgeClasses classes = pair_of(locks_of(drawn), 0, 1);
   const Vec3d place = drawn.places.to_frame({3, 1, 0});
-  Quadric total;
+  Quadric total = base_of(attributes, classes);
   EXPECT_EQ(attributes.add_classes(total, classes, Vec3d(0.0)), 0.0) << "nothing is fixed";
   EXPECT_NEAR(total.evaluate(place), 0.0, 1e-9);
-  attributes.join(classes[0], place);
-  EXPECT_NEAR(written(attributes, 0)[0], 4.0F, 1e-5F);
-  EXPECT_NEAR(written(attributes, 0)[1], 2.0F, 1e-5F);
+  attributes.join(classes);
+  EXPECT_NEAR(written(attributes, 0, place)[0], 4.0F, 1e-5F);
+  EXPECT_NEAR(written(attributes, 0, place)[1], 2.0F, 1e-5F);
+  EXPECT_EQ(attributes.take_base(1).c(), 0.0) << "the wedge that stays has all of it";
+  EXPECT_GT(attributes.take_base(0).c(), 0.0);
+  EXPECT_EQ(attributes.take_base(0).c(), 0.0) << "once";
 }
 
 TEST(AttributeQuadrics, AFixedValueCostsWhatItIsOff) {
   const DrawnMesh drawn = closed_fan();
   const SimplifyInput input = linear_texture(drawn);
   AttributeQuadrics<double, 3> attributes = quadrics_of(drawn, input, {1.0, 1.0});
-  const std::vector<WedgeClass> classes{{{0, 1}, 0}};
+  const WedgeClasses classes = pair_of(locks_of(drawn, 0), 0, 1);
+  const Quadric base = base_of(attributes, classes);
   Quadric total;
-  EXPECT_NEAR(attributes.add_classes(total, classes, drawn.places[0]), 0.0, 1e-9) << "where it belongs";
+  const auto error_at = [&](const Vec3d& place) {
+    return base.evaluate(place) + attributes.add_classes(total, classes, place);
+  };
+  EXPECT_NEAR(error_at(drawn.places[0]), 0.0, 1e-9) << "where it belongs";
   // At the place of 1 the texture is 4 further in u: off by 4 over the twelve faces at both, 8 grid units squared each.
   const double area = 12.0 * 8.0 / (drawn.places.scale() * drawn.places.scale());
-  EXPECT_NEAR(attributes.add_classes(total, classes, drawn.places[1]), area * 16.0, 1e-9);
-  EXPECT_EQ(total.evaluate(drawn.places[1]), 0.0) << "no function of the place";
-  attributes.join(classes[0], drawn.places[1]);
-  EXPECT_EQ(written(attributes, 0), (std::vector<float>{1.0F, 0.0F})) << "and it stays as it is";
+  EXPECT_NEAR(error_at(drawn.places[1]), area * 16.0, 1e-9);
+  EXPECT_EQ(total.evaluate(drawn.places[1]), 0.0) << "nothing is taken off";
+  attributes.join(classes);
+  EXPECT_EQ(written(attributes, 0, drawn.places[1], true), (std::vector<float>{1.0F, 0.0F})) << "and it stays as it is";
 }
 
 // Two single wedges are one class, whichever of them is fixed.
@@ -82,13 +108,16 @@ TEST(AttributeQuadrics, APairIsTheClassOfItsTwo) {
   const AttributeQuadrics<double, 3> attributes = quadrics_of(drawn, input, {1.0, 3.0});
   const Vec3d given = drawn.places.to_frame({3, 1, 2});
   for (const std::uint32_t fixed : {kNoId, 0U, 1U}) {
-    const std::vector<WedgeClass> classes{{{0, 1}, fixed}};
-    Quadric of_pair, of_class;
-    EXPECT_EQ(attributes.add_pair(of_pair, {0, 1, fixed}, given), attributes.add_classes(of_class, classes, given));
+    const GroupLocks locks = locks_of(drawn, fixed);
+    const WedgeClasses classes = pair_of(locks, 0, 1);
+    EXPECT_EQ(classes.fixed(0), fixed);
+    Quadric of_pair = base_of(attributes, classes), of_class = of_pair;
+    EXPECT_EQ(attributes.add_pair(of_pair, 0, 1, locks, given), attributes.add_classes(of_class, classes, given));
     for (const Vec3d& at : {given, drawn.places[0], Vec3d(0.25, -0.5, 1.0)}) {
       EXPECT_EQ(of_pair.evaluate(at), of_class.evaluate(at)) << fixed;
     }
-    EXPECT_EQ(of_pair.evaluate(Vec3d(0.25, -0.5, 1.0)) > 0.0, fixed == kNoId) << "or there is nothing to compare";
+    const Vec3d off(0.25, -0.5, 1.0);
+    EXPECT_EQ(of_pair.evaluate(off) < base_of(attributes, classes).evaluate(off), fixed == kNoId);
   }
 }
 
@@ -98,22 +127,23 @@ TEST(AttributeQuadrics, LockedWedgesOfOneValueAgree) {
   input.wedge_attributes[2] = input.wedge_attributes[0];  // of 1 as of 0
   input.wedge_attributes[3] = input.wedge_attributes[1];
   const AttributeQuadrics<double, 3> attributes = quadrics_of(drawn, input, {1.0, 1.0});
-  GroupLocks locks(std::vector<std::uint8_t>(10, 0), std::vector<std::uint8_t>(10, 0), drawn.wedge_position);
-  EXPECT_TRUE(attributes.agree({{0, 1, 2}}, locks)) << "none is locked";
+  GroupLocks locks = locks_of(drawn);
+  EXPECT_TRUE(attributes.agree(pair_of(locks, 1, 2), locks)) << "none is locked";
   locks.is_wedge_locked = {1, 1, 0, 0, 0, 0, 0, 0, 0, 0};
-  EXPECT_TRUE(attributes.agree({{0, 1, 2}, 0}, locks)) << "two are, of one value";
+  EXPECT_TRUE(attributes.agree(pair_of(locks, 0, 1), locks)) << "two are, of one value";
+  EXPECT_TRUE(attributes.agree(pair_of(locks, 1, 2), locks)) << "one is";
   locks.is_wedge_locked[2] = 1;
-  EXPECT_FALSE(attributes.agree({{0, 1, 2}, 0}, locks)) << "2 is another";
+  EXPECT_FALSE(attributes.agree(pair_of(locks, 1, 2), locks)) << "2 is another";
 }
 
 TEST(AttributeQuadrics, WhatIsLockedOrDoesNotCountIsWrittenAsItCame) {
   const DrawnMesh drawn = closed_fan();
   const SimplifyInput input = linear_texture(drawn);
   AttributeQuadrics<double, 3> attributes = quadrics_of(drawn, input, {0.7, 0.0});
-  attributes.join({{0, 1}}, drawn.places[1]);
-  EXPECT_NEAR(written(attributes, 0)[0], 5.0F, 1e-5F) << "moved to the place of 1";
-  EXPECT_EQ(written(attributes, 0)[1], 0.0F);
-  EXPECT_EQ(written(attributes, 0, true), (std::vector<float>{1.0F, 0.0F}));
+  attributes.join(pair_of(locks_of(drawn), 0, 1));
+  EXPECT_NEAR(written(attributes, 0, drawn.places[1])[0], 5.0F, 1e-5F) << "moved to the place of 1";
+  EXPECT_EQ(written(attributes, 0, drawn.places[1])[1], 0.0F);
+  EXPECT_EQ(written(attributes, 0, drawn.places[1], true), (std::vector<float>{1.0F, 0.0F}));
 }
 
 TEST(AttributeQuadrics, NormalsAreWrittenOfUnitLength) {
@@ -126,8 +156,8 @@ TEST(AttributeQuadrics, NormalsAreWrittenOfUnitLength) {
     for (const float n : {x, 0.0F, x == 0.0F ? 1.0F : 0.8F}) input.wedge_attributes.push_back(n);
   }
   AttributeQuadrics<double, 3> attributes = quadrics_of(drawn, input, {1.0, 1.0, 1.0});
-  attributes.join({{0, 1}}, drawn.places.to_frame({2, 0, 0}));
-  const std::vector<float> n = written(attributes, 0);
+  attributes.join(pair_of(locks_of(drawn), 0, 1));
+  const std::vector<float> n = written(attributes, 0, drawn.places.to_frame({2, 0, 0}));
   EXPECT_NEAR(n[0] * n[0] + n[1] * n[1] + n[2] * n[2], 1.0F, 1e-6F);
   EXPECT_NEAR(n[2], 1.0F, 1e-5F) << "upright, as the two lean by the same angle";
 }
@@ -139,8 +169,8 @@ TEST(AttributeQuadrics, AcrossASliverAttributesAreConstant) {
   input.layout.uv_set_count = 1;
   input.wedge_attributes = {0.0F, 0.0F, 0.0F, 0.0F, 3.0F, 0.0F};
   AttributeQuadrics<double, 3> attributes = quadrics_of(drawn, input, {1.0, 1.0});
-  attributes.join({{0}}, drawn.places[1]);
-  EXPECT_NEAR(written(attributes, 0)[0], 1.0F, 1e-6F) << "the mean of the three, wherever it is";
+  attributes.join(pair_of(locks_of(drawn), 0, 0));
+  EXPECT_NEAR(written(attributes, 0, drawn.places[1])[0], 1.0F, 1e-6F) << "the mean of the three, wherever it is";
 }
 
 TEST(AttributeQuadrics, ANormalThatVanishesIsWrittenAsItCame) {
@@ -150,17 +180,17 @@ TEST(AttributeQuadrics, ANormalThatVanishesIsWrittenAsItCame) {
   input.layout.has_normal = true;
   input.wedge_attributes = {1.0F, 0.0F, 0.0F, -1.0F, 0.0F, 0.0F, 0.0F, 0.0F, 0.0F};
   AttributeQuadrics<double, 3> attributes = quadrics_of(drawn, input, {1.0, 1.0, 1.0});
-  attributes.join({{0}}, drawn.places[0]);
-  EXPECT_EQ(written(attributes, 0), (std::vector<float>{1.0F, 0.0F, 0.0F}));
+  attributes.join(pair_of(locks_of(drawn), 0, 0));
+  EXPECT_EQ(written(attributes, 0, drawn.places[0]), (std::vector<float>{1.0F, 0.0F, 0.0F}));
 }
 
 TEST(AttributeQuadrics, WithoutAttributesThereAreNone) {
   const DrawnMesh drawn = closed_fan();
   const SimplifyInput input = as_input(drawn);
-  const AttributeQuadrics<double, 3> attributes(input, {});
+  const AttributeQuadrics<double, 3> attributes(input, {}, false);
   EXPECT_EQ(attributes.count(), 0U);
   Quadric total;
-  EXPECT_EQ(attributes.add_classes(total, {}, Vec3d(0.0)), 0.0);
+  EXPECT_EQ(attributes.add_classes(total, WedgeClasses(), Vec3d(0.0)), 0.0);
 }
 
 // SimplifyOptions says what they are: a normal that is off counts like a distance of its weight times the side of a

@@ -87,9 +87,9 @@ TEST(ExactQuadric, ErrorsAreToldHoweverSmallAndNeverBelowZero) {
   Quadric q;
   q.add_plane({1, 0, 0}, 0.0, 1.0);
   EXPECT_EQ(q.evaluate({0x1p-200, 5.0, 7.0}), 0x1p-400);
-  q.c = -1.0;
+  q.b2_c[1] = -1.0;
   EXPECT_EQ(q.evaluate(Vec3d(0.5)), 0.0);
-  q.c = -0.25;
+  q.b2_c[1] = -0.25;
   EXPECT_EQ(q.evaluate(Vec3d(0.5)), 0.0);
 }
 
@@ -98,9 +98,9 @@ template <class Real>
 long double relative_residual(const BasicQuadric<Real>& q, const VecOf<Real>& p) {
   using L = long double;
   const L x = p.x, y = p.y, z = p.z;
-  const std::array<std::array<L, 4>, 3> rows{{{q.a00 * x, q.a01 * y, q.a02 * z, q.b0},
-                                              {q.a01 * x, q.a11 * y, q.a12 * z, q.b1},
-                                              {q.a02 * x, q.a12 * y, q.a22 * z, q.b2}}};
+  const std::array<std::array<L, 4>, 3> rows{{{q.a00() * x, q.a01() * y, q.a02() * z, q.b0()},
+                                              {q.a01() * x, q.a11() * y, q.a12() * z, q.b1()},
+                                              {q.a02() * x, q.a12() * y, q.a22() * z, q.b2()}}};
   L worst = 0.0L;
   for (const auto& row : rows) {
     L sum = 0.0L, size = 0.0L;
@@ -137,9 +137,9 @@ TEST(ExactQuadric, TheMinimumSolvesItsSystem) {
 template <class Real>
 bool has_minimum(const std::array<double, 3>& diagonal) {
   BasicQuadric<Real> q;
-  q.a00 = static_cast<Real>(diagonal[0]);
-  q.a11 = static_cast<Real>(diagonal[1]);
-  q.a22 = static_cast<Real>(diagonal[2]);
+  q.a00_a01[0] = static_cast<Real>(diagonal[0]);
+  q.a11_a12[0] = static_cast<Real>(diagonal[1]);
+  q.b1_a22[1] = static_cast<Real>(diagonal[2]);
   VecOf<Real> p;
   return q.minimize(p);
 }
@@ -171,8 +171,10 @@ TEST(ExactQuadric, APivotOfTwelveLostDigitsIsNotTrusted) {
 TEST(ExactQuadric, AMinimumThatIsNotFiniteIsNone) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     Quadric q;
-    q.a00 = q.a11 = q.a22 = 1e-200;
-    (axis == 0 ? q.b0 : axis == 1 ? q.b1 : q.b2) = 1e200;
+    q.a00_a01[0] = q.a11_a12[0] = q.b1_a22[1] = 1e-200;
+    q.a02_b0[1] = axis == 0 ? 1e200 : 0.0;
+    q.b1_a22[0] = axis == 1 ? 1e200 : 0.0;
+    q.b2_c[0] = axis == 2 ? 1e200 : 0.0;
     Vec3d p;
     EXPECT_FALSE(q.minimize(p)) << axis;
   }
@@ -185,19 +187,37 @@ struct LinearFace {
   std::array<double, 2> offset;
 };
 
+/// What of a wedge's error depends on its values, and what on the place alone.
 template <class Real>
-WedgeQuadric<Real, 3> wedge_quadric_of(const std::vector<LinearFace>& faces) {
-  WedgeQuadric<Real, 3> q;
-  for (const LinearFace& face : faces) {
-    WedgeQuadric<Real, 3> own;
-    own.base.weight = static_cast<Real>(face.weight);
-    for (std::size_t j = 0; j < 2; ++j) {
-      own.add_face(j, VecOf<Real>(face.slope[j]), static_cast<Real>(face.offset[j]), static_cast<Real>(face.weight));
-    }
-    EXPECT_EQ(own.base.weight, face.weight) << "a face counts once, however many attributes";
-    q.add(own, 2);
+struct Wedge {
+  WedgeQuadric<Real, 3> values;
+  BasicQuadric<Real> base;
+
+  void add_face(std::size_t j, const Vec3d& slope, double offset, double weight) {
+    const Linear<Real> value(VecOf<Real>(slope), static_cast<Real>(offset));
+    base.add_square(value, static_cast<Real>(weight));
+    values.sum[j] += value.scaled(static_cast<Real>(weight));
   }
-  return q;
+  void add(const Wedge& other) {
+    values.add(other.values, 2);
+    base += other.base;
+  }
+  [[nodiscard]] double error(const VecOf<Real>& p, const double* of, std::size_t count) const {
+    return double{base.evaluate(p)} + double{values.evaluate(p, of, count)};
+  }
+};
+
+template <class Real>
+Wedge<Real> wedge_of(const std::vector<LinearFace>& faces) {
+  Wedge<Real> wedge;
+  for (const LinearFace& face : faces) {
+    Wedge<Real> own;
+    own.values.weight = static_cast<Real>(face.weight);
+    for (std::size_t j = 0; j < 2; ++j) own.add_face(j, face.slope[j], face.offset[j], face.weight);
+    wedge.add(own);
+  }
+  EXPECT_EQ(wedge.base.weight, 0) << "attributes have no area";
+  return wedge;
 }
 
 double error_of_values(const std::vector<LinearFace>& faces, const Vec3d& p, const double* values) {
@@ -232,28 +252,25 @@ void expect_wedge_sums(std::uint64_t seed) {
   for (int round = 0; round < 300; ++round) {
     std::vector<LinearFace> faces = draw(1 + random.below(3));
     const std::vector<LinearFace> more = draw(1 + random.below(3));
-    const WedgeQuadric<Real, 3> one = wedge_quadric_of<Real>(faces), other = wedge_quadric_of<Real>(more);
-    const auto joined = WedgeQuadric<Real, 3>::sum(one, other, 2);
-    WedgeQuadric<Real, 3> added = one;
-    added.add(other, 2);
+    Wedge<Real> joined = wedge_of<Real>(faces);
+    joined.add(wedge_of<Real>(more));
     faces.insert(faces.end(), more.begin(), more.end());
-    EXPECT_EQ(joined.base.weight, 16);
-    BasicQuadric<Real> reduced;
+    EXPECT_EQ(joined.values.weight, 16);
+    BasicQuadric<Real> reduced = joined.base;
     reduced.add_point(VecOf<Real>(1), Real(2));
-    joined.add_reduced_to(reduced, 2);
+    joined.values.add_best_to(reduced, 2);
     EXPECT_EQ(reduced.weight, 0) << "attributes have no area";
     for (int k = 0; k < 6; ++k) {
       const Vec3d p = whole_vector(random, 4);
       const VecOf<Real> at(p);
       const std::array<double, 2> values{static_cast<double>(random.below(7)) - 3.0, 1.0 * random.below(4)};
       const double error = error_of_values(faces, p, values.data());
-      ASSERT_EQ(joined.evaluate(at, values.data(), 2), error) << "seed " << seed << ", round " << round;
-      ASSERT_EQ(added.evaluate(at, values.data(), 2), error) << "seed " << seed << ", round " << round;
+      ASSERT_EQ(joined.error(at, values.data(), 2), error) << "seed " << seed << ", round " << round;
       std::array<double, 2> best{};
       for (std::size_t j = 0; j < 2; ++j) {
         for (const LinearFace& face : faces) best[j] += face.weight * (glm::dot(face.slope[j], p) + face.offset[j]);
         best[j] /= 16.0;
-        ASSERT_EQ(joined.best(j, at), best[j]);
+        ASSERT_EQ(joined.values.best(j, at), best[j]);
       }
       ASSERT_EQ(reduced.evaluate(at),
                 error_of_values(faces, p, best.data()) + 2.0 * glm::dot(p - Vec3d(1), p - Vec3d(1)))
@@ -270,19 +287,18 @@ TEST(ExactQuadric, AWedgeCostsWhatItsValuesAreOffOnEachFace) {
 TEST(ExactQuadric, AWedgeOfNoFaceCostsNothingAndOfATinyOneItsShare) {
   const WedgeQuadric<double, 3> none;
   Quadric total;
-  none.add_reduced_to(total, 2);
+  none.add_best_to(total, 2);
   EXPECT_EQ(total.evaluate(Vec3d(1.0)), 0.0) << "and not what is no number";
-  WedgeQuadric<double, 3> tiny;
+  Wedge<double> tiny;
   for (const double value : {1.0, -1.0}) {
-    tiny.base.weight += 0x1p-60;
+    tiny.values.weight += 0x1p-60;
     tiny.add_face(0, Vec3d(0.0), value, 0x1p-60);
   }
-  tiny.add_reduced_to(total, 1);
+  total = tiny.base;
+  tiny.values.add_best_to(total, 1);
   EXPECT_EQ(total.evaluate(Vec3d(0.0)), 0x1p-59) << "the mean is 0, and both are 1 off";
   const double value = 1.0;
-  EXPECT_EQ(tiny.evaluate(Vec3d(0.0), &value, 1), 0x1p-58);
-  tiny.base.c = -1.0;
-  EXPECT_EQ(tiny.evaluate(Vec3d(0.0), &value, 1), 0x1p-60 * 2) << "the rest alone, of what is not below zero";
+  EXPECT_EQ(tiny.error(Vec3d(0.0), &value, 1), 0x1p-58);
 }
 
 // The best of the three candidates: the stationary point along the edge, held to it, and its ends.
@@ -311,16 +327,16 @@ TEST(Placement, NoPointOfTheEdgeIsCheaperThanTheFallback) {
     const Vec3d place = place_vertex(q, a, b);
     long double least = std::numeric_limits<long double>::infinity();
     const auto error_at = [&](const Vec3l& p) {
-      const Vec3l r(of_edge.a00 * p.x + of_edge.a01 * p.y + of_edge.a02 * p.z,
-                    of_edge.a01 * p.x + of_edge.a11 * p.y + of_edge.a12 * p.z,
-                    of_edge.a02 * p.x + of_edge.a12 * p.y + of_edge.a22 * p.z);
-      return glm::dot(p, r) + 2.0L * glm::dot(Vec3l(of_edge.b0, of_edge.b1, of_edge.b2), p) + of_edge.c;
+      const Vec3l r(of_edge.a00() * p.x + of_edge.a01() * p.y + of_edge.a02() * p.z,
+                    of_edge.a01() * p.x + of_edge.a11() * p.y + of_edge.a12() * p.z,
+                    of_edge.a02() * p.x + of_edge.a12() * p.y + of_edge.a22() * p.z);
+      return glm::dot(p, r) + 2.0L * glm::dot(Vec3l(of_edge.b0(), of_edge.b1(), of_edge.b2()), p) + of_edge.c();
     };
     constexpr int kSteps = 512;
     for (int i = 0; i <= kSteps; ++i) {
       least = std::min(least, error_at(Vec3l(a) + Vec3l(b - a) * (static_cast<long double>(i) / kSteps)));
     }
-    const double size = q.a00 + q.a11 + q.a22 + std::fabs(q.c);
+    const double size = q.a00() + q.a11() + q.a22() + std::fabs(q.c());
     ASSERT_LE(error_at(Vec3l(place)), least + 1e-14L * size) << "seed 107, round " << round;
     const double along = glm::dot(place - a, b - a) / glm::dot(b - a, b - a);
     ASSERT_GE(along, -1e-12);

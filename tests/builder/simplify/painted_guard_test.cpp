@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -36,25 +37,26 @@ struct WeighedEdge {
   WedgeClasses classes;
   CollapseStar star;
 
-  WeighedEdge(DrawnMesh& mesh, const SimplifyInput& in)
+  /// Around the middle of the edge (0, 1), or around `target`.
+  WeighedEdge(DrawnMesh& mesh, const SimplifyInput& in, std::optional<Vec3i> target = {})
       : drawn(mesh),
         input(in),
         locks(in.is_locked, in.is_wedge_shared, in.wedge_position),
-        attributes(input, std::vector<double>(in.layout.stride(), 1.0)),
-        classes(in.layout.stride() == 0 ? 0 : in.wedge_position.size(), in.positions.size()) {
-    for (std::uint32_t t = 0; t < drawn.mesh.triangle_count() && in.layout.stride() > 0; ++t) {
+        attributes(input, std::vector<double>(in.layout.stride(), 1.0), true),
+        star(target ? mesh.star_at(mesh.places.to_frame(*target), 0, 1) : mesh.star(0, 1)) {
+    if (in.layout.stride() == 0) return;
+    for (std::uint32_t t = 0; t < drawn.mesh.triangle_count(); ++t) {
       const Face face = face_of(drawn.mesh, drawn.places, t);
       if (!(face.twice_area > 0.0)) continue;
-      attributes.add_face({drawn.mesh.wedge(3 * t), drawn.mesh.wedge(3 * t + 1), drawn.mesh.wedge(3 * t + 2)}, face);
+      (void)attributes.add_face({drawn.mesh.wedge(3 * t), drawn.mesh.wedge(3 * t + 1), drawn.mesh.wedge(3 * t + 2)},
+                                face);
     }
-    classes.start(drawn.mesh);
-    star = drawn.star(0, 1);
-    classes.collect(drawn.mesh, locks, star);
+    classes.collect(drawn.mesh, locks, star.a, star.b);
   }
 
   [[nodiscard]] double distance2(const PaintedUnits& units, double least = 0.0) {
     FiveGuard guard(input, units, drawn.places);
-    return guard.distance2(drawn.mesh, drawn.places, star, classes.classes(), attributes, least);
+    return guard.distance2(drawn.mesh, drawn.places, locks, star, classes, attributes, least);
   }
 };
 
@@ -92,12 +94,11 @@ struct Plain {
     const std::size_t stride = weighed.input.layout.stride();
     for (std::size_t j = 0; j < stride; ++j) v[j] = double{weighed.input.wedge_attributes[wedge * stride + j]};
     const WedgeClasses& all = weighed.classes;
-    for (const WedgeClass& c : all.classes()) {
-      if (std::find(c.members.begin(), c.members.end(), wedge) == c.members.end()) continue;
-      FiveQuadrics after = weighed.attributes;  // what the collapse itself does
-      after.join(c, weighed.star.target);
-      after.values_of(c.keeper(), v);
-    }
+    if (all.count() == 0) return point(weighed.star.target, v);
+    FiveQuadrics after = weighed.attributes;  // what the collapse itself does
+    after.join(all);
+    const std::uint32_t of = all.class_of(all.find(wedge));
+    after.values_of(all.keeper(of), all.fixed(of) != kNoId, weighed.star.target, v);
     return point(weighed.star.target, v);
   }
   void shade(Rows& t) const {
@@ -135,14 +136,14 @@ struct Plain {
   }
   [[nodiscard]] double largest2() const {
     std::vector<Rows> old, made;
-    for (const StarEnd* end : {&weighed.star.a, &weighed.star.b}) {
-      for (const std::uint32_t corner : end->corners) {
+    for (const Ring* end : {&weighed.star.a, &weighed.star.b}) {
+      for (const std::uint32_t corner : end->corners()) {
         const std::uint32_t next = CollapseMesh::next_in_triangle(corner);
         old.push_back({at(corner), at(next), at(CollapseMesh::next_in_triangle(next))});
         shade(old.back());
       }
     }
-    for (const CollapseStar::OuterEdge& edge : weighed.star.outer) {
+    for (const CollapseStar::OuterEdge& edge : weighed.star.outer()) {
       const std::uint32_t next = CollapseMesh::next_in_triangle(edge.corner);
       made.push_back({joined(edge.corner), at(next), at(CollapseMesh::next_in_triangle(next))});
       shade(made.back());
@@ -187,8 +188,7 @@ PaintedUnits units(double u, double v, double normal = 0.0) {
 
 TEST(PaintedGuard, ALinearTextureIsMovedByNothing) {
   DrawnMesh drawn = closed_fan();
-  WeighedEdge weighed(drawn, two_to_one(drawn));
-  weighed.star.target = drawn.places.to_frame({3, 1, 0});
+  WeighedEdge weighed(drawn, two_to_one(drawn), Vec3i(3, 1, 0));
   EXPECT_NEAR(weighed.distance2(units(1.0, 1.0)), 0.0, 1e-12);
   EXPECT_FALSE(FiveGuard(weighed.input, {}, drawn.places).is_on()) << "nothing is promised";
   EXPECT_TRUE(FiveGuard(weighed.input, units(1.0, 1.0), drawn.places).is_on());
@@ -215,8 +215,7 @@ TEST(PaintedGuard, ChartsOfASeamAreKeptApart) {
   DrawnMesh drawn = seamed_fan();
   SimplifyInput input = two_to_one(drawn);
   for (std::size_t w = 10; w < 14; ++w) input.wedge_attributes[2 * w] += 1e4F;
-  WeighedEdge weighed(drawn, input);
-  weighed.star.target = drawn.places.to_frame({1, 0, 0});  // on the seam
+  WeighedEdge weighed(drawn, input, Vec3i(1, 0, 0));  // on the seam
   EXPECT_NEAR(weighed.distance2(units(1.0, 1.0)), 0.0, 1e-9);
 }
 
@@ -254,9 +253,8 @@ TEST(PaintedGuard, IsThatOfEveryPointAgainstEveryTriangle) {
     for (std::size_t i = 0; i < drawn.wedge_position.size() * input.layout.stride(); ++i)
       input.wedge_attributes.push_back(static_cast<float>(random.between(-1.0, 1.0)));
     const PaintedUnits of = units(random.between(0.0, 100.0), random.between(0.0, 100.0), kind > 0 ? 30.0 : 0.0);
-    WeighedEdge weighed(drawn, input);
-    weighed.star.target = drawn.places.to_frame(random_point(random, 1000));
-    if (weighed.star.outer.empty()) continue;
+    WeighedEdge weighed(drawn, input, random_point(random, 1000));
+    if (weighed.star.outer().empty()) continue;
     const double plain = Plain{weighed, of, 1.0 / (drawn.places.scale() * input.grid.step())}.largest2();
     EXPECT_NEAR(weighed.distance2(of), plain, 1e-4 * plain + 1e-9) << "seed 211, round " << round;
     EXPECT_EQ(weighed.distance2(of, 1.01 * plain + 1e-6), 1.01 * plain + 1e-6) << "seed 211, round " << round;
@@ -265,36 +263,6 @@ TEST(PaintedGuard, IsThatOfEveryPointAgainstEveryTriangle) {
   }
   EXPECT_GT(moved, 45);
   EXPECT_GT(by_normal, 12);
-}
-
-/// Around a hub of a thousand triangles corners alone are asked about: what is said is no less than what any point
-/// moves.
-TEST(PaintedGuard, AHubIsNeverCheaperThanItsPoints) {
-  constexpr std::uint32_t kSpokes = 300;
-  std::vector<Vec3i> points{{0, 0, 0}};
-  std::vector<WedgeTriangle> triangles;
-  for (std::uint32_t i = 0; i < kSpokes; ++i) {
-    const double turn = 2.0 * 3.14159265358979 * i / kSpokes;
-    points.emplace_back(static_cast<int>(5000.0 * std::cos(turn)), static_cast<int>(5000.0 * std::sin(turn)), 0);
-    triangles.push_back({0, 1 + i, 1 + (i + 1) % kSpokes});
-  }
-  DrawnMesh drawn(points, triangles);
-  SimplifyInput input = two_to_one(drawn);
-  for (std::size_t i = 0; i < input.wedge_attributes.size(); i += 7) input.wedge_attributes[i] += 40.0F;
-  WeighedEdge weighed(drawn, input);
-  const PaintedUnits of = units(1.0, 1.0);
-  const Plain plain{weighed, of, 1.0 / (drawn.places.scale() * input.grid.step())};
-  double moved2 = 0.0;  // of the corners: no point between them moves farther
-  for (const StarEnd* end : {&weighed.star.a, &weighed.star.b}) {
-    for (const std::uint32_t corner : end->corners) {
-      const Row before = plain.at(corner), after = plain.joined(corner);
-      double sum = 0.0;
-      for (std::size_t d = 0; d < before.size(); ++d) sum += (after[d] - before[d]) * (after[d] - before[d]);
-      moved2 = std::max(moved2, sum);
-    }
-  }
-  EXPECT_GT(moved2, 0.0);
-  EXPECT_NEAR(weighed.distance2(of), moved2, 1e-9 * moved2);
 }
 
 TEST(PaintedGuard, NumbersThatAreNoneDoNotSpread) {

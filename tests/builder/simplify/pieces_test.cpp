@@ -32,7 +32,7 @@ TEST(Pieces, HangTogetherByVertices) {
 
 TEST(Pieces, AVertexWithoutATriangleCountsForNone) {
   DrawnMesh drawn = three_leaves();
-  drawn.mesh.merge_vertices(5, 6);  // its triangle goes
+  drawn.join(5, 6);  // its triangle goes
   EXPECT_EQ(count_pieces(drawn.mesh, drawn.points.size()), 1U);
 }
 
@@ -44,7 +44,7 @@ struct Foliage {
 
   explicit Foliage(const std::vector<std::uint32_t>& locked) {
     for (const std::uint32_t v : locked) input.is_locked[v] = 1;
-    drawn.mesh.merge_vertices(0, 2);
+    drawn.join(0, 2);
   }
 };
 

@@ -90,8 +90,8 @@ TEST(Placement, BeyondTheEdgeItsEndIsTaken) {
 
 TEST(Placement, WhereNothingBendsTheCheaperEndIsTaken) {
   Quadric slope;  // 100 + 2 x: rounding can leave such a thing where all planes hold the edge
-  slope.b0 = 1.0;
-  slope.c = 100.0;
+  slope.a02_b0[1] = 1.0;
+  slope.b2_c[1] = 100.0;
   EXPECT_EQ(place_vertex(slope, kA, kB), kA);
   EXPECT_EQ(place_vertex(slope, kB, kA), kA) << "whichever end it is";
   Quadric none;

@@ -85,14 +85,17 @@ TEST(WedgeQuadric, ALinearAttributeIsReproducedWithoutError) {
   // s(p) = 2x - y + 3z + 1 on faces of different normals: the gradient along each face is what counts.
   const Vec3d slope(2, -1, 3);
   WedgeQuadric<double, 1> q;
+  Quadric base;
   for (const Vec3d& n : {Vec3d(0, 0, 1), glm::normalize(Vec3d(0, 1, 1)), glm::normalize(Vec3d(1, 1, 1))}) {
     const Vec3d tangential = slope - n * glm::dot(slope, n);
-    q.base.weight += 0.5;
-    q.add_face(0, tangential, 1.0, 0.5);  // all faces pass through the origin, where s = 1
+    const Linear<double> on_face(tangential, 1.0);  // all faces pass through the origin, where s = 1
+    q.weight += 0.5;
+    q.sum[0] += on_face.scaled(0.5);
+    base.add_square(on_face, 0.5);
   }
   EXPECT_NEAR(q.best(0, Vec3d(0.0)), 1.0, 1e-12);
   const double value = 1.0;
-  EXPECT_NEAR(q.evaluate(Vec3d(0.0), &value, 1), 0.0, 1e-12);
+  EXPECT_NEAR(base.evaluate(Vec3d(0.0)) + q.evaluate(Vec3d(0.0), &value, 1), 0.0, 1e-12);
 }
 
 TEST(Simplify, AFlatPatchGoesDownToTwoTrianglesWithoutError) {

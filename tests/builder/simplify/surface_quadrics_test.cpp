@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "builder/simplify/surface_quadrics.h"
 
+#include <cmath>
 #include <set>
 
 #include <gtest/gtest.h>
 
 #include "builder/simplify/attribute_scales.h"
+#include "builder/simplify/edge_uses.h"
 #include "support/drawn_mesh.h"
 
 namespace meshlode::builder {
@@ -32,6 +34,10 @@ SimplifyInput with_texture(const DrawnMesh& drawn, float offset) {
   return input;
 }
 
+HeldEdges held_edges_of(const SimplifyInput& input, const SimplifyOptions& options, const CollapseMesh& mesh) {
+  return find_held_edges(input, options, mesh, sorted_edge_uses(mesh));
+}
+
 SurfaceQuadrics<double> quadrics_of(const DrawnMesh& drawn, const HeldEdges& held) {
   SurfaceQuadrics<double> surface(drawn.points.size(), SimplifyOptions{}.border_weight);
   for (std::uint32_t t = 0; t < drawn.mesh.triangle_count(); ++t) {
@@ -51,20 +57,32 @@ Edges edges_of(const HeldEdges& held) {
 TEST(HeldEdges, TheRimOfAClosedFanIsItsBorder) {
   const DrawnMesh drawn = closed_fan();
   SimplifyInput input = as_input(drawn);
-  const HeldEdges held = find_held_edges(input, {}, drawn.mesh);
+  const HeldEdges held = held_edges_of(input, {}, drawn.mesh);
   EXPECT_EQ(edges_of(held), (Edges{{2, 3}, {3, 4}, {4, 5}, {5, 6}, {6, 7}, {7, 8}, {8, 9}, {2, 9}}));
   for (const HeldEdge& edge : held.edges) EXPECT_TRUE(edge.is_border && edge.weight == 1.0);
   EXPECT_EQ(held.is_border, (std::vector<std::uint8_t>{0, 0, 1, 1, 1, 1, 1, 1, 1, 1}));
   EXPECT_TRUE(held.has_free_border);
   input.is_locked = held.is_border;
-  EXPECT_FALSE(find_held_edges(input, {}, drawn.mesh).has_free_border) << "both ends of each are locked";
+  EXPECT_FALSE(held_edges_of(input, {}, drawn.mesh).has_free_border) << "both ends of each are locked";
+  EXPECT_TRUE(held_edges_of(input, {}, drawn.mesh).edges.empty()) << "nothing need hold what cannot move";
+  EXPECT_EQ(held_edges_of(input, {}, drawn.mesh).is_border, held.is_border);
   input.is_locked[5] = 0;
-  EXPECT_TRUE(find_held_edges(input, {}, drawn.mesh).has_free_border);
+  EXPECT_TRUE(held_edges_of(input, {}, drawn.mesh).has_free_border);
+}
+
+TEST(HeldEdges, TheyTellWhetherTheGroupIsAManifold) {
+  const auto is_manifold = [](const std::vector<WedgeTriangle>& triangles) {
+    const DrawnMesh drawn({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {0, -4, 0}, {0, 0, 4}}, triangles);
+    return held_edges_of(as_input(drawn), {}, drawn.mesh).is_manifold;
+  };
+  EXPECT_TRUE(is_manifold({{0, 1, 2}, {1, 0, 3}}));
+  EXPECT_FALSE(is_manifold({{0, 1, 2}, {0, 1, 3}})) << "both run one way along (0, 1)";
+  EXPECT_FALSE(is_manifold({{0, 1, 2}, {1, 0, 3}, {0, 1, 4}})) << "three on an edge";
 }
 
 TEST(HeldEdges, AnOpenFanHasItsDiameterToo) {
   const DrawnMesh drawn = open_fan();
-  EXPECT_EQ(edges_of(find_held_edges(as_input(drawn), {}, drawn.mesh)),
+  EXPECT_EQ(edges_of(held_edges_of(as_input(drawn), {}, drawn.mesh)),
             (Edges{{0, 1}, {0, 6}, {1, 2}, {2, 3}, {3, 4}, {4, 5}, {5, 6}}));
 }
 
@@ -73,7 +91,7 @@ TEST(HeldEdges, WhereMaterialsMeetBothSidesHoldTheEdge) {
   SimplifyInput input = as_input(drawn);
   for (std::size_t t = 5; t < 10; ++t) input.triangle_material[t] = 7;
   std::multiset<std::pair<std::uint32_t, std::uint32_t>> inner;
-  for (const HeldEdge& edge : find_held_edges(input, {}, drawn.mesh).edges) {
+  for (const HeldEdge& edge : held_edges_of(input, {}, drawn.mesh).edges) {
     if (edge.is_border) continue;
     inner.emplace(edge.a, edge.b);
     EXPECT_EQ(edge.weight, SimplifyOptions{}.border_weight);
@@ -85,7 +103,7 @@ TEST(HeldEdges, ASeamIsHeldWhereItsTextureBreaks) {
   const DrawnMesh drawn = seamed_fan();
   const auto count_inner = [&](const SimplifyInput& input) {
     int count = 0;
-    for (const HeldEdge& edge : find_held_edges(input, {}, drawn.mesh).edges) {
+    for (const HeldEdge& edge : held_edges_of(input, {}, drawn.mesh).edges) {
       if (!edge.is_border) count += edge.weight == SimplifyOptions{}.seam_weight ? 1 : 1000;
     }
     return count;
@@ -119,7 +137,7 @@ TEST(SurfaceQuadrics, RaisingAnEdgeCostsItsAreasTimesTheSquare) {
 
 TEST(SurfaceQuadrics, ABorderMayBeSlidAlongAndNotMovedOff) {
   const DrawnMesh drawn = open_fan();
-  const SurfaceQuadrics<double> surface = quadrics_of(drawn, find_held_edges(as_input(drawn), {}, drawn.mesh));
+  const SurfaceQuadrics<double> surface = quadrics_of(drawn, held_edges_of(as_input(drawn), {}, drawn.mesh));
   const Quadric total = surface.around(0, 1);
   EXPECT_NEAR(total.evaluate(drawn.places.to_frame({3, 0, 0})), 0.0, 1e-12);
   // Walls on (6, 0), (0, 1) twice, and (1, 2), each of length 4; 2 grid units off.
@@ -132,8 +150,7 @@ TEST(SurfaceQuadrics, ABorderMayBeSlidAlongAndNotMovedOff) {
 
 TEST(SurfaceQuadrics, ASeamIsAWallFromBothSides) {
   const DrawnMesh drawn = seamed_fan();
-  const SurfaceQuadrics<double> surface =
-      quadrics_of(drawn, find_held_edges(with_texture(drawn, 0.5F), {}, drawn.mesh));
+  const SurfaceQuadrics<double> surface = quadrics_of(drawn, held_edges_of(with_texture(drawn, 0.5F), {}, drawn.mesh));
   const double scale = drawn.places.scale();
   const double walls = 2.0 * 4.0 * 16.0 / (scale * scale), off = 1.0 / scale;
   EXPECT_NEAR(surface.around(0, 1).evaluate(drawn.places.to_frame({2, 1, 0})),
@@ -142,10 +159,10 @@ TEST(SurfaceQuadrics, ASeamIsAWallFromBothSides) {
 
 TEST(SurfaceQuadrics, AJoinedVertexStandsForBothAndTellsItsError) {
   const DrawnMesh drawn = open_fan();
-  SurfaceQuadrics<double> surface = quadrics_of(drawn, find_held_edges(as_input(drawn), {}, drawn.mesh));
+  SurfaceQuadrics<double> surface = quadrics_of(drawn, held_edges_of(as_input(drawn), {}, drawn.mesh));
   const Quadric before = surface.around(0, 1);
   const double scale = drawn.places.scale();
-  const double error = surface.join(0, 1, drawn.places.to_frame({2, 3, 1}));
+  const double error = std::sqrt(surface.join(0, 1, drawn.places.to_frame({2, 3, 1})));
   EXPECT_NEAR(error, 3.0 / scale, 1e-12) << "3 off the border is more than 1 off the plane";
   EXPECT_NEAR(surface.weight(0), before.weight, 1e-15);
   EXPECT_NEAR(surface.around(0, 3).weight, before.weight + surface.weight(3), 1e-12);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "builder/simplify/wedge_classes.h"
 
+#include <algorithm>
 #include <set>
 #include <vector>
 
@@ -26,59 +27,63 @@ GroupLocks no_locks(const DrawnMesh& drawn) {
           drawn.wedge_position};
 }
 
-WedgeClasses classes_of(DrawnMesh& drawn) {
-  WedgeClasses classes(drawn.wedge_position.size(), drawn.points.size());
-  StarEnd end;
-  for (end.vertex = 0; end.vertex < drawn.points.size(); ++end.vertex) {
-    drawn.mesh.corners_of(end.vertex, end.corners);
-    classes.update(drawn.mesh, end);
-  }
-  return classes;
-}
-
 Members members_of(const WedgeClasses& classes) {
   Members out;
-  for (const WedgeClass& c : classes.classes()) out.insert(c.members);
+  for (std::uint32_t first = 0; first < classes.count(); ++first) {
+    if (!classes.is_first(first)) continue;
+    std::vector<std::uint32_t> members;
+    for (std::uint32_t i = 0; i < classes.count(); ++i) {
+      if (classes.class_of(i) == first) members.push_back(classes.wedge(i));
+    }
+    std::sort(members.begin(), members.end());
+    out.insert(members);
+  }
   return out;
 }
 
+WedgeClasses classes_of(DrawnMesh& drawn, const GroupLocks& locks, std::uint32_t a, std::uint32_t b) {
+  WedgeClasses classes;
+  const CollapseStar star = drawn.star(a, b);
+  classes.collect(drawn.mesh, locks, star.a, star.b);
+  return classes;
+}
 Members collect(DrawnMesh& drawn, std::uint32_t a, std::uint32_t b) {
-  WedgeClasses classes = classes_of(drawn);
-  classes.collect(drawn.mesh, no_locks(drawn), drawn.star(a, b));
-  return members_of(classes);
+  return members_of(classes_of(drawn, no_locks(drawn), a, b));
 }
 
-/// In one pass over the corners what a look around each vertex tells.
-TEST(WedgeClasses, StartKnowsWhatUpdatesTell) {
-  for (DrawnMesh drawn : {closed_fan(), seamed_fan()}) {
-    const WedgeClasses told = classes_of(drawn);
-    WedgeClasses started(drawn.wedge_position.size(), drawn.points.size());
-    started.start(drawn.mesh);
-    for (std::uint32_t a = 0; a < drawn.points.size(); ++a) {
-      ASSERT_EQ(started.needs_corners(a, a), told.needs_corners(a, a)) << a;
-      if (!told.needs_corners(a, a)) {
-        EXPECT_EQ(started.pair_of(no_locks(drawn), a, a).least, told.pair_of(no_locks(drawn), a, a).least) << a;
-      }
+TEST(OnlyWedges, AreToldOfVerticesWithoutASeam) {
+  const DrawnMesh closed = closed_fan(), seamed = seamed_fan();
+  const OnlyWedges one(closed.mesh), several(seamed.mesh);
+  EXPECT_FALSE(one.has_seams());
+  EXPECT_TRUE(several.has_seams());
+  const std::set<std::uint32_t> on_seam{0, 1, 2, 6};
+  for (std::uint32_t v = 0; v < closed.points.size(); ++v) {
+    EXPECT_EQ(one[v], v);
+    EXPECT_EQ(several[v], on_seam.contains(v) ? kNoId : v);
+  }
+  // In one pass over the corners what a look around each vertex tells.
+  for (const DrawnMesh& drawn : {closed, seamed}) {
+    OnlyWedges told(drawn.mesh);
+    for (std::uint32_t v = 0; v < drawn.points.size(); ++v) {
+      const std::uint32_t before = told[v];
+      told.update(drawn.mesh, v);
+      EXPECT_EQ(told[v], before) << v;
     }
   }
 }
 
 TEST(WedgeClasses, OfTwoVerticesWithoutASeamTheWedgesAreOne) {
   DrawnMesh drawn = closed_fan();
-  EXPECT_FALSE(classes_of(drawn).needs_corners(1, 0));
   EXPECT_EQ(collect(drawn, 1, 0), (Members{{0, 1}}));
 }
 
 TEST(WedgeClasses, AlongASeamEachSideIsItsOwn) {
   DrawnMesh drawn = seamed_fan();
-  EXPECT_TRUE(classes_of(drawn).needs_corners(0, 1));
   EXPECT_EQ(collect(drawn, 0, 1), (Members{{0, 1}, {10, 11}}));
 }
 
 TEST(WedgeClasses, OffASeamItsOtherSideStaysAsItIs) {
   DrawnMesh drawn = seamed_fan();
-  EXPECT_TRUE(classes_of(drawn).needs_corners(4, 0)) << "one end on the seam is enough";
-  EXPECT_TRUE(classes_of(drawn).needs_corners(0, 4)) << "either of them";
   EXPECT_EQ(collect(drawn, 4, 0), (Members{{0, 4}, {10}}));
   EXPECT_EQ(collect(drawn, 0, 8), (Members{{8, 10}, {0}}));
 }
@@ -115,44 +120,50 @@ TEST(WedgeClasses, TheFirstLockedWedgeRules) {
   DrawnMesh drawn = seamed_fan();
   GroupLocks locks = no_locks(drawn);
   locks.is_wedge_locked[11] = 1;
-  WedgeClasses classes = classes_of(drawn);
-  classes.collect(drawn.mesh, locks, drawn.star(0, 1));
-  ASSERT_EQ(classes.classes().size(), 2U);
-  for (const WedgeClass& c : classes.classes()) {
-    const bool is_upper = c.members[0] == 0;
-    EXPECT_EQ(c.fixed, is_upper ? kNoId : 11U);
-    EXPECT_EQ(c.keeper(), is_upper ? 0U : 11U);
-  }
+  WedgeClasses classes = classes_of(drawn, locks, 0, 1);
+  const std::uint32_t upper = classes.class_of(classes.find(1)), lower = classes.class_of(classes.find(10));
+  EXPECT_EQ(classes.fixed(upper), kNoId);
+  EXPECT_EQ(classes.keeper(upper), 0U);
+  EXPECT_EQ(classes.fixed(lower), 11U);
+  EXPECT_EQ(classes.keeper(lower), 11U);
   EXPECT_TRUE(classes.joins_locked(10));
   EXPECT_FALSE(classes.joins_locked(0));
+  EXPECT_FALSE(classes.joins_locked(99)) << "which is not there";
   locks.is_wedge_locked[10] = 1;
-  classes.collect(drawn.mesh, locks, drawn.star(0, 1));
+  classes = classes_of(drawn, locks, 0, 1);
   EXPECT_TRUE(classes.joins_locked(11));
-  for (const WedgeClass& c : classes.classes()) EXPECT_TRUE(c.fixed == kNoId || c.fixed == 10U);
+  EXPECT_EQ(classes.fixed(classes.class_of(classes.find(11))), 10U);
+}
+
+TEST(WedgeClasses, APairIsWhatItsTrianglesWouldTell) {
+  DrawnMesh drawn = closed_fan();
+  for (const std::uint32_t locked : {kNoId, 0U, 1U}) {
+    GroupLocks locks = no_locks(drawn);
+    if (locked != kNoId) locks.is_wedge_locked[locked] = 1;
+    WedgeClasses pair;
+    pair.set_pair(locks, 0, 1);
+    const WedgeClasses told = classes_of(drawn, locks, 0, 1);
+    EXPECT_EQ(members_of(pair), members_of(told));
+    EXPECT_EQ(pair.fixed(0), told.fixed(0));
+    EXPECT_EQ(pair.keeper(0), told.keeper(0));
+  }
 }
 
 TEST(WedgeClasses, AfterTheCollapseTheCornersHaveTheKeepers) {
   DrawnMesh drawn = seamed_fan();
-  WedgeClasses classes = classes_of(drawn);
+  OnlyWedges only(drawn.mesh);
+  const WedgeClasses classes = classes_of(drawn, no_locks(drawn), 0, 1);
   const CollapseStar star = drawn.star(0, 1);
-  classes.collect(drawn.mesh, no_locks(drawn), star);
-  for (const WedgeClass& c : classes.classes()) relabel_wedges(drawn.mesh, star, c);
-  drawn.mesh.merge_vertices(0, 1);
-  StarEnd joined;
-  drawn.mesh.corners_of(0, joined.corners);
+  relabel_wedges(drawn.mesh, star.a, classes);
+  relabel_wedges(drawn.mesh, star.b, classes);
+  drawn.join(0, 1);
+  Ring joined;
+  drawn.mesh.gather(0, joined);
   std::multiset<std::uint32_t> wedges;
-  for (const std::uint32_t corner : joined.corners) wedges.insert(drawn.mesh.wedge(corner));
+  for (const std::uint32_t corner : joined.corners()) wedges.insert(drawn.mesh.wedge(corner));
   EXPECT_EQ(wedges, (std::multiset<std::uint32_t>{0, 0, 0, 0, 10, 10, 10, 10}));
-  classes.update(drawn.mesh, joined);
-  EXPECT_TRUE(classes.needs_corners(0, 3)) << "the seam still goes through it";
-}
-
-TEST(WedgeClasses, WithoutAttributesThereAreNone) {
-  DrawnMesh drawn = closed_fan();
-  WedgeClasses classes(0, drawn.points.size());
-  EXPECT_FALSE(classes.needs_corners(0, 1));
-  classes.collect(drawn.mesh, no_locks(drawn), drawn.star(0, 1));
-  EXPECT_TRUE(classes.classes().empty());
+  only.update(drawn.mesh, 0);
+  EXPECT_EQ(only[0], kNoId) << "the seam still goes through it";
 }
 
 }  // namespace

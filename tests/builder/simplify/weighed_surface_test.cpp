@@ -74,13 +74,12 @@ TEST(WeighedSurface, AttributesCostWhatEachFaceSaysOfThem) {
       input.wedge_attributes.push_back(static_cast<float>(random.signed_unit()));
     std::vector<double> scales(kCount);
     for (double& scale : scales) scale = random.log_between(0.1, 10.0);
-    AttributeQuadrics<double, 6> attributes(input, scales);
+    AttributeQuadrics<double, 6> attributes(input, scales, true);
     for (std::uint32_t t = 0; t < drawn.triangles.size(); ++t)
-      attributes.add_face(drawn.triangles[t], face_of(drawn.mesh, drawn.places, t));
+      (void)attributes.add_face(drawn.triangles[t], face_of(drawn.mesh, drawn.places, t));
 
-    const std::vector<std::uint32_t> members = round % 3 == 0   ? std::vector<std::uint32_t>{0}
-                                               : round % 3 == 1 ? std::vector<std::uint32_t>{0, 1}
-                                                                : std::vector<std::uint32_t>{0, 1, 4, 5};
+    const std::vector<std::uint32_t> members =
+        round % 3 == 0 ? std::vector<std::uint32_t>{0} : std::vector<std::uint32_t>{0, 1};
     const Vec3d place = random.in_cube(1.0);
     const std::uint32_t fixed = round % 4 < 2 ? kNoId : members[round / 4 % members.size()];
     // Each face as often as it has members, with its area, and the mean of what they say.
@@ -115,16 +114,20 @@ TEST(WeighedSurface, AttributesCostWhatEachFaceSaysOfThem) {
       }
     }
     const auto tolerance = static_cast<double>(1e-12L * size);
-    const std::vector<WedgeClass> classes{{members, fixed}};
+    GroupLocks locks(std::vector<std::uint8_t>(10, 0), std::vector<std::uint8_t>(10, 0), drawn.wedge_position);
+    if (fixed != kNoId) locks.is_wedge_locked[fixed] = 1;
+    WedgeClasses classes;
+    classes.set_pair(locks, members.front(), members.back());
     Quadric total;
+    for (const std::uint32_t w : members) total += AttributeQuadrics<double, 6>(attributes).take_base(w);
     const double fixed_error = attributes.add_classes(total, classes, place);
-    EXPECT_NEAR(fixed == kNoId ? total.evaluate(place) : fixed_error, static_cast<double>(error), tolerance)
+    EXPECT_NEAR(total.evaluate(place) + fixed_error, static_cast<double>(error), tolerance)
         << "seed 141, round " << round;
     if (fixed != kNoId) continue;
     EXPECT_EQ(fixed_error, 0.0);
-    attributes.join(classes[0], place);
+    attributes.join(classes);
     std::vector<float> written;
-    attributes.write(members[0], false, written);
+    attributes.write(members[0], false, place, written);
     // What is stored is a float, and of that the normal of length one.
     std::array<float, kCount> stored;
     for (std::size_t j = 0; j < kCount; ++j) stored[j] = static_cast<float>(static_cast<double>(best[j] / scales[j]));
@@ -135,6 +138,13 @@ TEST(WeighedSurface, AttributesCostWhatEachFaceSaysOfThem) {
       EXPECT_NEAR(written[j], value, 0x1.001p-24 * std::fabs(value) + 1e-11) << "seed 141, round " << round;
     }
   }
+}
+
+WedgeClasses pair_of(const DrawnMesh& drawn, std::uint32_t x, std::uint32_t y) {
+  const std::vector<std::uint8_t> none(drawn.wedge_position.size(), 0);
+  WedgeClasses classes;
+  classes.set_pair(GroupLocks(none, none, drawn.wedge_position), x, y);
+  return classes;
 }
 
 // A face is a sliver where it is lower than a thousandth of its longest edge, whichever that is.
@@ -148,11 +158,11 @@ TEST(WeighedSurface, AcrossLessThanAThousandthNothingIsLinear) {
       for (const Vec3i& p : drawn.points) {
         for (const double value : {p.x / 100000.0, 1.0}) input.wedge_attributes.push_back(static_cast<float>(value));
       }
-      AttributeQuadrics<double, 2> attributes(input, {1.0, 1.0});
-      attributes.add_face({0, 1, 2}, face_of(drawn.mesh, drawn.places, 0));
-      attributes.join({{0}}, drawn.places.to_frame({100000, 0, 0}));
+      AttributeQuadrics<double, 2> attributes(input, {1.0, 1.0}, false);
+      (void)attributes.add_face({0, 1, 2}, face_of(drawn.mesh, drawn.places, 0));
+      attributes.join(pair_of(drawn, 0, 0));
       std::vector<float> written;
-      attributes.write(0, false, written);
+      attributes.write(0, false, drawn.places.to_frame({100000, 0, 0}), written);
       EXPECT_NEAR(written[0], height < 100 ? 0.5 : 1.0, 1e-5) << height << ", from corner " << first;
       EXPECT_NEAR(written[1], 1.0, 1e-6);
     }
@@ -167,12 +177,12 @@ TEST(WeighedSurface, TinyScalesAndTinyNormalsAreNotNothing) {
   for (std::size_t v = 0; v < drawn.points.size(); ++v) {
     for (const float value : {0.6e-20F, 0.0F, -0.8e-20F}) input.wedge_attributes.push_back(value);
   }
-  AttributeQuadrics<double, 3> attributes(input, {1e-20, 1e-20, 1e-20});
+  AttributeQuadrics<double, 3> attributes(input, {1e-20, 1e-20, 1e-20}, false);
   for (std::uint32_t t = 0; t < drawn.triangles.size(); ++t)
-    attributes.add_face(drawn.triangles[t], face_of(drawn.mesh, drawn.places, t));
-  attributes.join({{0, 1}}, Vec3d(0.0));
+    (void)attributes.add_face(drawn.triangles[t], face_of(drawn.mesh, drawn.places, t));
+  attributes.join(pair_of(drawn, 0, 1));
   std::vector<float> written;
-  attributes.write(0, false, written);
+  attributes.write(0, false, Vec3d(0.0), written);
   EXPECT_NEAR(written[0], 0.6, 1e-6);
   EXPECT_NEAR(written[1], 0.0, 1e-6);
   EXPECT_NEAR(written[2], -0.8, 1e-6);
@@ -202,7 +212,7 @@ TEST(WeighedSurface, PlanesCostTheSquaredHeightOverEachFace) {
         << "seed 142, round " << round;
     EXPECT_NEAR(surface.around(0, 1).weight, static_cast<double>(area), static_cast<double>(1e-14L * area));
     EXPECT_NEAR(surface.total_weight(), static_cast<double>(total), static_cast<double>(1e-14L * total));
-    EXPECT_NEAR(surface.join(0, 1, place), static_cast<double>(std::sqrt(error / area)),
+    EXPECT_NEAR(std::sqrt(surface.join(0, 1, place)), static_cast<double>(std::sqrt(error / area)),
                 static_cast<double>(std::sqrt(1e-14L * size / area)))
         << "seed 142, round " << round;
   }
@@ -239,7 +249,7 @@ TEST(WeighedSurface, WallsCostTheSquaredWayAcrossThem) {
     EXPECT_EQ(surface.around(0, 1).weight, 0.0) << "walls have no area";
     EXPECT_GT(surface.around(4, 4).evaluate(place), 0.0) << "the other end has it too";
     EXPECT_EQ(surface.around(3, 6).evaluate(place), 0.0) << "no one else";
-    EXPECT_NEAR(surface.join(0, 1, place), static_cast<double>(std::sqrt(of_borders / border_weight)), 1e-7)
+    EXPECT_NEAR(std::sqrt(surface.join(0, 1, place)), static_cast<double>(std::sqrt(of_borders / border_weight)), 1e-7)
         << "the seam is no border: seed 143, round " << round;
     EXPECT_NEAR(surface.around(0, 0).evaluate(place), 2.0 * static_cast<double>(error),
                 static_cast<double>(2e-14L * size))
@@ -340,7 +350,7 @@ TEST(WeighedSurface, ScalesAreOfTheLivingTriangles) {
   std::vector<Vec3i> points = whole.points;
   points[7] = points[6];
   DrawnMesh joined(points, whole.triangles), other(points, rest);
-  joined.mesh.merge_vertices(6, 7);
+  joined.join(6, 7);
   const std::vector<double> a = attribute_scales(shaded(joined), {}, joined.mesh, joined.places);
   const std::vector<double> b = attribute_scales(shaded(other), {}, other.mesh, other.places);
   for (std::size_t j = 0; j < 2; ++j) EXPECT_NEAR(a[j], b[j], 1e-12 * b[j]);
