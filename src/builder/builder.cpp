@@ -19,6 +19,7 @@
 #include "builder/dag/aggregate_dag.h"
 #include "builder/dag/build_dag.h"
 #include "builder/dag/join_dags.h"
+#include "builder/encode/attribute_steps.h"
 #include "builder/encode/encode.h"
 #include "builder/hierarchy/hierarchy.h"
 #include "builder/measure/measure.h"
@@ -187,6 +188,10 @@ std::uint32_t promises_of(format::Promise promise) {
   return 0;
 }
 
+void free_exact(PreparedMesh& mesh) {
+  release(mesh.exact_positions, mesh.exact_on_grid, mesh.exact_triangles);
+}
+
 /// The levels of one prepared mesh, whose surface is freed: by distances, by coverage, or each part by its own.
 Result<LodDag> build_levels(PreparedMesh& mesh, const AggregateDecision& aggregate, const Survey& found,
                             const PaintedUnits& painted, const PipelineOptions& options, const MeshOptions& own,
@@ -198,12 +203,15 @@ Result<LodDag> build_levels(PreparedMesh& mesh, const AggregateDecision& aggrega
     dag.simplify.painted = painted;
     return dag;
   };
-  const auto measured = [&](PreparedMesh& part, const auto& build) {
-    if (own.error_tier == format::ErrorTier::kQem) release(part.exact_positions, part.exact_triangles);
+  const auto measured = [&](PreparedMesh& part, const auto& build) -> Result<LodDag> {
+    if (own.error_tier == format::ErrorTier::kQem) free_exact(part);
     Result<LodDag> dag = build();
-    if (dag) measure(part, own.error_tier, *dag);
-    release(part.exact_positions, part.exact_triangles);
-    return dag;
+    if (!dag) return dag;
+    // Of parts the steps are not known before both are there: their attributes' deviations are not stored.
+    if (own.error_tier != format::ErrorTier::kQem && &part == &mesh) snap_attributes(part.layout, encoding, *dag);
+    const Status status = measure(part, own.error_tier, *dag);
+    free_exact(part);
+    return status ? std::move(dag) : status.error();
   };
   const auto by_distance = [&](PreparedMesh& part) {
     return measured(part, [&] { return build_dag_and_free(part, coarsening(part)); });

@@ -39,6 +39,7 @@ extern const Verb kVerifyVerb;
 extern const Verb kRenderVerb;
 extern const Verb kExtractVerb;
 extern const Verb kRepackVerb;
+extern const Verb kMeasureVerb;
 extern const Verb kCompletionVerb;
 extern const Verb kManVerb;
 

@@ -68,6 +68,7 @@ PreparedMesh part_of(const PreparedMesh& mesh, std::span<const std::uint8_t> fla
   exact.number_all();
   part.positions = positions.of_kept(mesh.positions);
   part.exact_positions = exact.of_kept(mesh.exact_positions);
+  part.exact_on_grid = exact.of_kept(mesh.exact_on_grid);
   part.wedge_position = wedges.of_kept(mesh.wedge_position);
   for (std::uint32_t& position : part.wedge_position) position = positions.of(position);
   part.wedge_attributes = wedges.of_kept(mesh.wedge_attributes, mesh.layout.stride());
@@ -104,7 +105,7 @@ SplitMesh split_and_free(PreparedMesh& mesh, std::span<const std::uint32_t> most
   }
   SplitMesh split{part_of(mesh, is_loose, 1, loose), part_of(mesh, is_loose, 0, pieces.size() - loose)};
   release(mesh.positions, mesh.wedge_position, mesh.wedge_attributes, mesh.triangles, mesh.triangle_material,
-          mesh.exact_positions, mesh.exact_triangles);
+          mesh.exact_positions, mesh.exact_on_grid, mesh.exact_triangles);
   return split;
 }
 

@@ -24,6 +24,9 @@ struct LodBounds {
 /// The float sphere that `inner` nest in, near-smallest.
 [[nodiscard]] Hierarchy::Sphere enclose_spheres(std::span<const Hierarchy::Sphere> inner, bool is_near_smallest = true);
 
+/// LodBounds::errors alone: spheres do not depend on errors.
+[[nodiscard]] std::vector<float> nest_errors(const LodDag& dag);
+
 /// The error of something coarser than `finer`: at least `error`, and grown where `finer` is not 0.
 [[nodiscard]] float grow_error(double error, float finer);
 
