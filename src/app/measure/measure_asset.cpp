@@ -119,7 +119,7 @@ format::Codec codec_of(const run::Asset& asset, const MetaInfo& meta) {
 }  // namespace
 
 Result<std::vector<std::uint8_t>> measure_asset(const run::Asset& asset, const scene::Scene& source,
-                                                format::ErrorTier tier, const OnMeasuredMesh& on_mesh) {
+                                                format::ErrorTier tier) {
   if (const Status size = run::check_decoded_bytes(asset, run::count_decoded_bytes(asset)); !size) return size.error();
   if (!asset.promises().empty()) {
     return Error{ErrorCode::kUnsupported, "promises",
@@ -133,7 +133,6 @@ Result<std::vector<std::uint8_t>> measure_asset(const run::Asset& asset, const s
   }
   Tables tables(asset);
   for (std::size_t m = 0; m < source.meshes.size(); ++m) {
-    if (on_mesh) on_mesh(m);
     const Status measured = measure_mesh(asset, MeshId(m), source.meshes[m], tier, tables);
     if (measured) continue;
     const std::string& place = measured.error().where;
