@@ -5,10 +5,12 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "base/ids.h"
 #include "base/vec.h"
+#include "scene/scene.h"
 
 namespace meshlode::builder {
 
@@ -34,12 +36,12 @@ struct DagCluster {
 
 struct DagGroup {
   std::uint32_t level = 0;                             ///< largest level of a member
-  std::uint32_t round = 0;                             ///< of the build that replaced it; of no use where terminal
   std::uint32_t first_cluster = 0, cluster_count = 0;  ///< members, contiguous in LodDag::clusters
   /// Selection error, object units; +inf if terminal. The same as quadric_error until measure() is through.
   double error = 0.0;
-  double quadric_error = 0.0;                          ///< the quadric's own estimate, object units; +inf if terminal
-  double deviation = 0.0;                              ///< of this group alone, without margin; +inf where not measured
+  double quadric_error = 0.0;  ///< the quadric's own estimate, object units; +inf if terminal
+  /// Of this group alone, without margin; +inf where not measured.
+  double deviation = std::numeric_limits<double>::infinity();
   /// Shading normals (root mean square angle, degrees) and UVs (95% of the surface is within it, UV units) against the
   /// source's. Running maxima along the DAG; +inf if terminal, and where not measured: then for all groups of the mesh.
   double normal_deviation = std::numeric_limits<double>::infinity();
@@ -47,6 +49,12 @@ struct DagGroup {
   bool is_terminal = false;
   bool is_aggregate = false;  ///< its error is of coverage (format::kGroupAggregate); never where terminal
   StuckReason stuck_reason = StuckReason::kNotStuck;  ///< not kNotStuck only where terminal
+};
+
+/// What attributes are stored as multiples of.
+struct AttributeSteps {
+  std::int32_t normal_scale = 0;  ///< of the octahedron's integer points; 0: no normals
+  std::array<std::int32_t, scene::kMaxUvSets> uv_log2{};
 };
 
 /// Clusters are ordered by group and groups from coarse to fine (level descending), so that a prefix is a complete,
@@ -60,10 +68,7 @@ struct LodDag {
   std::vector<std::array<std::uint8_t, 3>> triangles;  ///< local vertex indices of the cluster
   std::vector<std::uint32_t> triangle_material;
   std::uint32_t level_count = 0;
-
-  // For measure(), which frees them.
-  std::vector<std::uint32_t> vertex_position_id;  ///< per vertex: the same for all vertices of one position
-  std::vector<std::uint32_t> level0_source;  ///< of level 0, cluster by cluster: triangles of the prepared mesh
+  std::optional<AttributeSteps> steps;  ///< once attributes are what the file stores (snap_attributes())
 };
 
 }  // namespace meshlode::builder

@@ -50,6 +50,7 @@ struct PreparedMesh {
   std::vector<std::uint32_t> triangle_material;  ///< MaterialId value per triangle
   /// The same triangles before the grid: what deviations are measured against. Relative to the origin, object units.
   std::vector<Vec3d> exact_positions;
+  std::vector<Vec3i> exact_on_grid;                           ///< where the grid put each of them
   std::vector<std::array<std::uint32_t, 3>> exact_triangles;  ///< as long as triangles, corner by corner
   /// Of the exact triangles, worked out before the origin was taken away, where a thin one would lose its area; 0: it
   /// has none. Empty where nobody asks.

@@ -10,9 +10,10 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/json_depth.h"
 #include "base/version.h"
-#include "builder/measure/measure.h"
 #include "builder/hooks.h"
+#include "builder/measure/measure.h"
 #include "builder/plan/attributes.h"
 #include "builder/preset.h"
 #include "format/names.h"
@@ -23,6 +24,10 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+double margin_of(format::ErrorTier tier) {
+  return tier == format::ErrorTier::kMeasured ? kMeasuredMargin : 1.0;
+}
+
 /// What a group's deviation is multiplied by on the way to its error: the least over the meshes, which holds for all.
 /// The tier qem has no deviations.
 double error_margin_of(const PipelineOptions& options, std::size_t mesh_count) {
@@ -31,7 +36,8 @@ double error_margin_of(const PipelineOptions& options, std::size_t mesh_count) {
     for (std::size_t i = 0; i < mesh_count; ++i) has = has || options.of_mesh(i).error_tier == tier;
     return has;
   };
-  return has_tier(format::ErrorTier::kMeasured) && !has_tier(format::ErrorTier::kCertified) ? kMeasuredMargin : 1.0;
+  const bool is_measured = has_tier(format::ErrorTier::kMeasured) && !has_tier(format::ErrorTier::kCertified);
+  return margin_of(is_measured ? format::ErrorTier::kMeasured : format::ErrorTier::kCertified);
 }
 
 /// Names that made a difference; one that made none changes no byte.
@@ -155,6 +161,36 @@ Json parts_json(std::span<const scene::MeshPart> parts, std::size_t mesh_count) 
   return list;
 }
 
+/// Entries of meshes that differ from the whole, and from each other, by more than their tier: those of equal ones
+/// together.
+Json with_tier(const Json& whole, const Json& entries, format::ErrorTier tier) {
+  Json kept = Json::array();
+  for (Json entry : entries) {
+    if (!entry.is_object() || !entry.contains("meshes") || !entry["meshes"].is_array()) return entries;
+    entry["error_tier"] = format::name_of(tier);
+    const auto is_same_but_meshes = [&](const Json& other) {
+      Json as_this = other;
+      as_this["meshes"] = entry["meshes"];
+      return as_this == entry;
+    };
+    const auto is_of_whole = [&](const auto& item) {
+      return item.key() == "meshes" || (whole.contains(item.key()) && whole[item.key()] == item.value());
+    };
+    const auto items = entry.items();
+    const bool is_whole = std::all_of(items.begin(), items.end(), is_of_whole);
+    if (is_whole) continue;
+    const auto same = std::find_if(kept.begin(), kept.end(), is_same_but_meshes);
+    if (same == kept.end()) {
+      kept.push_back(std::move(entry));
+      continue;
+    }
+    Json& meshes = (*same)["meshes"];
+    meshes.insert(meshes.end(), entry["meshes"].begin(), entry["meshes"].end());
+    std::sort(meshes.begin(), meshes.end());
+  }
+  return kept;
+}
+
 /// One past the string that begins at `at`. Stays inside any text: the parser that accepted it stops at a zero byte.
 std::size_t end_of_string(std::string_view text, std::size_t at) {
   for (++at; at < text.size() && text[at] != '"'; ++at) {
@@ -200,6 +236,21 @@ std::string meta_with_codec(std::string_view meta, format::Codec codec) {
   const auto [begin, end] = find_codec(text);
   if (end > begin) text.replace(begin, end - begin, '"' + std::string(format::name_of(codec)) + '"');
   return text;
+}
+
+std::string meta_with_tier(std::string_view meta, format::ErrorTier tier) {
+  constexpr int kDeepest = 100;  // dump() goes down by recursion
+  const std::string text(meta);
+  Json json = is_nested_within(meta, kDeepest) ? Json::parse(text, nullptr, false) : Json();
+  if (!json.is_object() || !json.contains("settings") || !json["settings"].is_object()) return text;
+  Json& settings = json["settings"];
+  settings["error_tier"] = format::name_of(tier);
+  settings["error_margin"] = margin_of(tier);
+  if (settings.contains("mesh_settings") && settings["mesh_settings"].is_array()) {
+    settings["mesh_settings"] = with_tier(settings, settings["mesh_settings"], tier);
+    if (settings["mesh_settings"].empty()) settings.erase("mesh_settings");
+  }
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 std::string meta_json(const scene::Scene& scene, const PipelineOptions& options,

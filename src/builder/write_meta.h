@@ -24,4 +24,7 @@ namespace meshlode::builder {
 /// a codec, stays as it is.
 [[nodiscard]] std::string meta_with_codec(std::string_view meta, format::Codec codec);
 
+/// The same text as of a build that gave all meshes this tier.
+[[nodiscard]] std::string meta_with_tier(std::string_view meta, format::ErrorTier tier);
+
 }  // namespace meshlode::builder

@@ -13,9 +13,6 @@
 
 namespace meshlode::cli {
 
-/// The content hash that the asset says.
-[[nodiscard]] Hash128 stated_hash(const run::Asset& asset);
-
 /// The whole file, with the same content hash. Errors: kInvalid where the content is not that of the hash; those of
 /// unpacking; kUnsupported where it decodes to more than the asset may. Threads: those of the caller's arena.
 [[nodiscard]] Result<std::vector<std::uint8_t>> repacked(const run::Asset& asset, format::Codec codec);

@@ -42,6 +42,7 @@ extern const Verb kVerifyVerb;
 extern const Verb kRenderVerb;
 extern const Verb kExtractVerb;
 extern const Verb kRepackVerb;
+extern const Verb kMeasureVerb;
 extern const Verb kCompletionVerb;
 extern const Verb kManVerb;
 extern const Verb kStudyVerb;  ///< listed nowhere: for studies (docs/sweep.md)

@@ -16,6 +16,7 @@
 #include "outputs.h"
 #include "repacked.h"
 #include "run/read/asset.h"
+#include "run/unpack/content_hash.h"
 #include "verb.h"
 
 namespace meshlode::cli {
@@ -36,7 +37,7 @@ std::string describe_json(const RepackOptions& o, const run::Asset& asset, std::
   w.field("file", o.input);
   w.field("output", *o.output);
   w.field("codec", *o.codec);
-  w.field("content_hash", to_hex(stated_hash(asset)));
+  w.field("content_hash", to_hex(run::stated_hash(asset)));
   w.field("input_bytes", asset.bytes().size());
   w.field("bytes", bytes);
   w.end_object();
@@ -45,7 +46,7 @@ std::string describe_json(const RepackOptions& o, const run::Asset& asset, std::
 
 std::string describe_text(const RepackOptions& o, const run::Asset& asset, std::size_t bytes) {
   return o.input + ": " + std::to_string(asset.bytes().size()) + " bytes -> " + *o.output + ", " +
-         std::to_string(bytes) + " bytes with " + *o.codec + ", content " + to_hex(stated_hash(asset)) + "\n";
+         std::to_string(bytes) + " bytes with " + *o.codec + ", content " + to_hex(run::stated_hash(asset)) + "\n";
 }
 
 /// The place within the file, after its name.

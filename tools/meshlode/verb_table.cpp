@@ -9,8 +9,9 @@ namespace meshlode::cli {
 namespace {
 
 const Verb* const kVerbs[] = {
-    &kBuildVerb,    &kMergeVerb,  &kPlanVerb,   &kDoctorVerb,  &kInfoVerb,   &kCompareVerb,    &kSweepVerb,
-    &kValidateVerb, &kVerifyVerb, &kRenderVerb, &kExtractVerb, &kRepackVerb, &kCompletionVerb, &kManVerb,
+    &kBuildVerb,   &kMergeVerb,  &kPlanVerb,     &kDoctorVerb,     &kInfoVerb,
+    &kCompareVerb, &kSweepVerb,  &kValidateVerb, &kVerifyVerb,     &kRenderVerb,
+    &kExtractVerb, &kRepackVerb, &kMeasureVerb,  &kCompletionVerb, &kManVerb,
 };
 
 }  // namespace

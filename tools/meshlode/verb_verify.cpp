@@ -7,10 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "app/report/read_meta.h"
 #include "base/file.h"
 #include "base/json_writer.h"
-#include "base/printable.h"
 #include "explain.h"
 #include "file_kind.h"
 #include "findings.h"
@@ -23,7 +21,7 @@
 #include "run/decode/decode.h"
 #include "run/read/asset.h"
 #include "run/select/select.h"
-#include "scene/import/import.h"
+#include "source_scene.h"
 #include "verb.h"
 
 namespace meshlode::cli {
@@ -135,13 +133,6 @@ std::string to_json(const std::string& path, const std::string& source, const ju
   return json.text();
 }
 
-/// What --repair did to the source is found again by repairing it in the same way.
-bool was_repaired(const run::Asset& asset) {
-  const auto meshes = asset.meshes();
-  return app::read_meta(asset.meta_json()).repair ||
-         std::any_of(meshes.begin(), meshes.end(), [](const format::MeshRecord& m) { return m.dropped_repaired > 0; });
-}
-
 /// Clusters decoded, and a cut that draws each in every instance: what verify keeps at once.
 Status check_size(const run::Asset& asset) {
   if (Status geometry = run::check_decoded_bytes(asset, run::count_decoded_bytes(asset)); !geometry) return geometry;
@@ -152,54 +143,31 @@ Status check_size(const run::Asset& asset) {
   return cuts ? cuts : Status(Error{cuts.error().code, "cuts of all instances", cuts.error().detail});
 }
 
-/// Where the scene is another one than the asset was built from there is nothing to compare: a report of that alone.
-std::optional<judge::VerifyReport> find_other_source(const run::Asset& asset, const scene::Scene& source) {
-  const app::MetaInfo meta = app::read_meta(asset.meta_json());
-  if (meta.source_hash.empty() || meta.source_hash == source.source_hash) return std::nullopt;
-  const auto named = [](const std::string& name, const std::string& hash) {
-    return printable(name) + " (" + printable(hash, 8) + ")";
-  };
-  // The hash is of all files that were read: the scene's own may be the very one.
-  const char* const others = meta.source_file == source.source_name
-                                 ? ", or a file that it names (a texture, a library) is missing or changed"
-                                 : "";
+/// A report that the scene is another one than the asset was built from, and of that alone: there is nothing to
+/// compare.
+judge::VerifyReport report_other_source(const std::string& detail) {
   judge::VerifyReport report;
   report.checks.push_back({"", "the source is the one the asset was built from", 1, 1});
   report.findings.push_back({std::string(judge::info_of(judge::Rule::kV108).id), "", "section META: /source/hash",
-                             "the asset was built from " + named(meta.source_file, meta.source_hash) +
-                                 ", the source given is " + named(source.source_name, source.source_hash) + others +
-                                 "; nothing else was compared: give that scene, or --force"});
+                             detail + "; nothing else was compared: give that scene, or --force"});
   report.finding_count = 1;
   return report;
 }
 
-/// The asset and its scene the wrong way round.
-Status check_order(const std::string& path, const std::string& source) {
-  if (look_at_file(path).form != FileForm::kScene || look_at_file(source).form != FileForm::kAsset) return Ok{};
-  return Error{ErrorCode::kUsage, "",
-               "the asset and its scene are swapped; give 'meshlode verify " + source + " --source " + path + "'"};
-}
-
 int run_verify(const Verb& verb, std::span<char* const> args) {
   std::string path;
-  std::string source_path;
+  SourceOptions source_options;
   GpuOptions gpu_options;
   std::uint32_t jobs = 0;
   std::string deviation_cuts = "12";
   std::string max_decoded_text = kDefaultMaxDecodedText;
-  std::vector<std::string> allow_outside;
-  bool repair = false, linear_colors = false, is_forced = false;
   judge::VerifyOptions options;
   OutputOptions output;
   OptionParser parser(verb);
   parser.add_positional("file", path, "a .lode asset");
-  parser.add_value("--source", source_path, "the scene it was built from");
   parser.add_flag("--quick", options.is_quick,
                   "structure, border proof and one measured cut a mesh; the source's triangles are not looked for");
-  parser.add_flag("--repair", repair, "repair the source as build --repair does, also where the asset does not say so");
-  parser.add_flag("--linear-colors", linear_colors,
-                  "take colours as build --linear-colors does, also where the asset does not say so");
-  parser.add_flag("--force", is_forced, "compare with another scene, too, than the one that the asset was built from");
+  add_source_options(parser, source_options);
   parser.add_value("--cuts", options.uniform_cuts, "uniform cuts per mesh that cross-check the border proof");
   parser.add_value("--cameras", options.cameras, "random cameras that cross-check selection and hierarchy");
   parser.add_value("--deviation-cuts", deviation_cuts,
@@ -219,13 +187,10 @@ int run_verify(const Verb& verb, std::span<char* const> args) {
   add_promise_option(parser, gpu_options.promise);
   parser.add_flag("--explain", gpu_options.is_explained,
                   "say what the asset keeps, and with --gpu which passes the device runs, and why");
-  add_allow_outside_option(parser, allow_outside);
   add_max_decoded_option(parser, max_decoded_text);
   add_jobs_option(parser, jobs);
   add_output_options(parser, output);
   if (const auto exit_code = parser.parse(args)) return *exit_code;
-  if (source_path.empty())
-    return print_error({ErrorCode::kUsage, "--source", "the scene to verify against is missing"});
   if (gpu_options.promise != "position" && !gpu_options.is_on) {
     return print_error(
         {ErrorCode::kUsage, "--promise", "chooses what --gpu draws: uniform cuts are measured by all promises"});
@@ -241,12 +206,11 @@ int run_verify(const Verb& verb, std::span<char* const> args) {
 
   const Result<std::uint64_t> max_decoded = parse_max_decoded(max_decoded_text);
   if (!max_decoded) return print_error(max_decoded.error());
-  auto allowed = parse_allow_outside(allow_outside);
-  if (!allowed) return print_error(allowed.error());
+  if (const Status given = check_source_options("verify", path, source_options); !given)
+    return print_error(given.error());
   gpu_options.max_decoded = *max_decoded;
 
   const JobLimit limit(jobs);
-  if (const Status order = check_order(path, source_path); !order) return print_error(order.error());
   Result<run::Asset> asset = open_asset(path, *max_decoded);
   if (!asset) return print_error(asset.error());
   if (const auto id = asset->file_id()) output_files().keep(*id);
@@ -258,32 +222,23 @@ int run_verify(const Verb& verb, std::span<char* const> args) {
     return print_error({size.error().code, path + ": " + size.error().where, size.error().detail});
   }
   if (gpu_options.is_explained) std::fprintf(stderr, "%s", describe_recorded_plan(*asset).c_str());
-  std::vector<FileId> files_read;
-  const app::MetaInfo meta = app::read_meta(asset->meta_json());
-  Result<scene::Scene> source =
-      scene::import_scene(source_path, {.repair = repair || was_repaired(*asset),
-                                        .scene = meta.scene,
-                                        .files_read = &files_read,
-                                        .max_decoded = *max_decoded,
-                                        .may_lack_images = true,
-                                        .allow_outside = std::move(*allowed),
-                                        .linear_colors = linear_colors || meta.linear_colors});
-  output_files().keep(files_read);
+  const Result<scene::Scene> source = import_source(*asset, source_options, *max_decoded);
   if (!source) return print_error(source.error());
-  const Result<MappedFile> file = MappedFile::open(source_path);
+  const Result<MappedFile> file = MappedFile::open(source_options.path);
   if (file) options.source_bytes = file->bytes();
   if (options.is_quick) {  // as it is reported
     options.uniform_cuts = options.cameras = 0;
     options.deviation_budget = std::min(options.deviation_budget, judge::kQuickDeviationBudget);
   }
-  auto other = is_forced ? std::nullopt : find_other_source(*asset, *source);
-  judge::VerifyReport report = other ? std::move(*other) : judge::verify_asset(*asset, *source, options);
+  const std::optional<std::string> other = describe_other_source(*asset, *source, source_options);
+  judge::VerifyReport report = other ? report_other_source(*other) : judge::verify_asset(*asset, *source, options);
   if (gpu_options.is_on && !other) {
     if (const Status judged = verify_with_gpu(*asset, *source, gpu_options, report); !judged) {
       return print_error(judged.error());
     }
   }
-  if (!print_out(output.json() ? to_json(path, source_path, options, report) : describe(report, output.quiet))) {
+  if (!print_out(output.json() ? to_json(path, source_options.path, options, report)
+                               : describe(report, output.quiet))) {
     return static_cast<int>(ErrorCode::kIo);
   }
   return report.finding_count == 0 ? 0 : static_cast<int>(ErrorCode::kCheckFailed);

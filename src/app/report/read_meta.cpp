@@ -82,6 +82,7 @@ MetaInfo read_meta(std::string_view meta_json) {
     meta.settings = dump(*settings);
     meta.setting_lines = lines_of(*settings);
     meta.preset = string_at(*settings, "preset");
+    meta.codec = string_at(*settings, "codec");
     meta.scene = string_at(*settings, "scene");
     meta.repair = settings->contains("repair") && (*settings)["repair"] == true;
     meta.linear_colors = settings->contains("linear_colors") && (*settings)["linear_colors"] == true;

@@ -26,7 +26,7 @@ struct MetaInfo {
   std::string generator, source_file, source_hash;
   std::string settings = "{}";             ///< JSON object
   std::vector<std::string> setting_lines;  ///< of `settings`, for text: the whole's, then those of meshes
-  std::string preset;                      ///< of the settings; empty where it is not said
+  std::string preset, codec;               ///< of the settings; empty where it is not said
   std::string plan = "[]";                 ///< JSON array
   std::string left_out = "[]";             ///< JSON array
   std::vector<Decision> decisions;         ///< of `plan`, for text

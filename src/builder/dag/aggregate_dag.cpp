@@ -253,7 +253,6 @@ class AggregateDag {
     made_.pixel_size = std::max(thin.pixel_size, children.pixel_size);
     for (const ClusterId c : group.clusters) group.level = std::max(group.level, pool_.cluster(c).level);
     group.quadric_error = made_.pixel_size;
-    group.deviation = thin.pixel_size;
     const auto first = static_cast<std::uint32_t>(pool_.clusters.size());
     for (std::uint32_t c = 0; c < clustering.count; ++c) made_.clusters.push_back(ClusterId(first + c));
     made_.triangles = static_cast<std::uint32_t>(result.triangles.size());

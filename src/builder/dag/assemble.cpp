@@ -33,10 +33,9 @@ struct OrderedCluster {
   }
 };
 
-/// Writes a cluster's triangles to the places that it was given, and of its vertices the wedges. `level0`: where its
-/// triangles of the prepared mesh go, if it is of level 0.
-void write_cluster(const BuildPool& pool, const BuildCluster& source, const DagCluster& cluster, std::uint32_t level0,
-                   LodDag& dag, std::vector<std::uint32_t>& wedge_of_vertex) {
+/// Writes a cluster's triangles to the places that it was given, and of its vertices the wedges.
+void write_cluster(const BuildPool& pool, const BuildCluster& source, const DagCluster& cluster, LodDag& dag,
+                   std::vector<std::uint32_t>& wedge_of_vertex) {
   OrderedCluster ordered(pool, source);
   for (std::size_t i = 0; i < ordered.triangles.size(); ++i) {
     const std::uint32_t t = ordered.triangles[i];
@@ -45,7 +44,6 @@ void write_cluster(const BuildPool& pool, const BuildCluster& source, const DagC
           static_cast<std::uint8_t>(ordered.wedges.add(pool.triangles[t][k]));
     }
     dag.triangle_material[cluster.first_triangle + i] = pool.triangle_material[t];
-    if (!source.own_group.is_valid()) dag.level0_source[level0 + i] = pool.level0_source[t];
   }
   std::copy(ordered.wedges.numbers().begin(), ordered.wedges.numbers().end(),
             wedge_of_vertex.begin() + cluster.first_vertex);
@@ -59,12 +57,8 @@ void write_clusters(BuildPool& pool, const std::vector<ClusterId>& sources, std:
     const OrderedCluster ordered(pool, pool.cluster(sources[i]));
     dag.clusters[i].vertex_count = static_cast<std::uint32_t>(ordered.wedges.size());
   });
-  std::uint32_t vertices = 0, triangles = 0, level0 = 0;
-  std::vector<std::uint32_t> first_of_level0;
-  first_of_level0.reserve(sources.size());
+  std::uint32_t vertices = 0, triangles = 0;
   for (DagCluster& cluster : dag.clusters) {
-    first_of_level0.push_back(level0);
-    if (!cluster.own_group.is_valid()) level0 += cluster.triangle_count;
     cluster.first_vertex = vertices;
     cluster.first_triangle = triangles;
     vertices += cluster.vertex_count;
@@ -73,17 +67,14 @@ void write_clusters(BuildPool& pool, const std::vector<ClusterId>& sources, std:
   std::vector<std::uint32_t> wedge_of_vertex(vertices);
   dag.triangles.resize(triangles);
   dag.triangle_material.resize(triangles);
-  dag.level0_source.resize(level0);
   parallel_for_each_index(sources.size(), kGrain, [&](std::size_t i) {
-    write_cluster(pool, pool.cluster(sources[i]), dag.clusters[i], first_of_level0[i], dag, wedge_of_vertex);
+    write_cluster(pool, pool.cluster(sources[i]), dag.clusters[i], dag, wedge_of_vertex);
   });
-  release(pool.triangles, pool.clusters, pool.groups, pool.level0_source);
+  release(pool.triangles, pool.clusters, pool.groups);
   pool.triangle_material = {};
   dag.vertex_position.resize(vertices);
-  dag.vertex_position_id.resize(vertices);
   parallel_for_each_index(vertices, kLoopGrain, [&](std::size_t v) {
-    dag.vertex_position_id[v] = pool.wedge_position[wedge_of_vertex[v]];
-    dag.vertex_position[v] = pool.positions[dag.vertex_position_id[v]];
+    dag.vertex_position[v] = pool.positions[pool.wedge_position[wedge_of_vertex[v]]];
   });
   release(pool.positions, pool.wedge_position);
   dag.vertex_attributes.resize(std::size_t{vertices} * stride);
@@ -126,9 +117,7 @@ LodDag assemble_dag(BuildPool&& pool, const PreparedMesh& mesh) {
     group.is_aggregate = source.is_aggregate;
     group.stuck_reason = source.stuck_reason;
     const double infinity = std::numeric_limits<double>::infinity();
-    group.round = source.round;
     group.error = group.quadric_error = source.is_terminal ? infinity : source.quadric_error;
-    group.deviation = source.deviation;
     for (const ClusterId c : source.clusters) {
       const BuildCluster& made = pool.cluster(c);
       DagCluster cluster;

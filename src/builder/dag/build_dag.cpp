@@ -72,10 +72,8 @@ std::vector<ClusterId> clusters_of(const Front& front, const std::vector<std::ui
 }
 
 /// The group of `clusters` as what an accepted attempt replaces it by says.
-BuildGroup replaced_group(const BuildPool& pool, std::vector<ClusterId> clusters, const Attempt& attempt,
-                          std::uint32_t round) {
+BuildGroup replaced_group(const BuildPool& pool, std::vector<ClusterId> clusters, const Attempt& attempt) {
   BuildGroup group;
-  group.round = round;
   group.clusters = std::move(clusters);
   group.quadric_error = attempt.result.quadric_error;
   for (const ClusterId c : group.clusters) {
@@ -91,7 +89,7 @@ BuildGroup replaced_group(const BuildPool& pool, std::vector<ClusterId> clusters
 /// Adds a run of groups, and the coarser clusters that replace those that were accepted, to the pool and to the next
 /// front: the same clusters where a group got stuck. In the order of groups.
 void advance(BuildPool& pool, const Front& front, std::span<const std::vector<std::uint32_t>> groups,
-             std::span<const Attempt> attempts, std::uint32_t round, Front& next) {
+             std::span<const Attempt> attempts, Front& next) {
   std::vector<NewClusters> accepted;
   auto cluster_count = static_cast<std::uint32_t>(pool.clusters.size());
   for (std::size_t g = 0; g < groups.size(); ++g) {
@@ -107,7 +105,7 @@ void advance(BuildPool& pool, const Front& front, std::span<const std::vector<st
     for (std::uint32_t c = 0; c < attempt.clustering.count; ++c) {
       next.add(ClusterId(cluster_count++), StuckReason::kNotStuck);
     }
-    BuildGroup group = replaced_group(pool, std::move(clusters), attempt, round);
+    BuildGroup group = replaced_group(pool, std::move(clusters), attempt);
     accepted.push_back({attempt.result, attempt.clustering, group.level + 1, GroupId(pool.groups.size())});
     pool.groups.push_back(std::move(group));
   }
@@ -148,7 +146,7 @@ bool run_round(BuildPool& pool, const PreparedMesh& mesh, const Groups& groups, 
     refuse_shared_places(attempts, taken);
     any_accepted = any_accepted || std::any_of(attempts.begin(), attempts.end(),
                                                [](const Attempt& attempt) { return attempt.is_accepted; });
-    advance(pool, front, std::span(groups).subspan(first, attempts.size()), attempts, round, next);
+    advance(pool, front, std::span(groups).subspan(first, attempts.size()), attempts, next);
     parallel_for_each_index(attempts.size(), 1, [&](std::size_t i) { attempts[i] = {}; });
   }
   pool.end_round();

@@ -143,10 +143,9 @@ std::vector<std::uint32_t> BuildPool::add_ranges(const Clustering& clustering, s
   return start;
 }
 
-std::vector<std::uint32_t> BuildPool::fill_clusters(std::span<const WedgeTriangle> source,
-                                                    std::span<const std::uint32_t> wedges,
-                                                    std::span<const std::uint32_t> materials,
-                                                    const Clustering& clustering, std::vector<std::uint32_t> start) {
+void BuildPool::fill_clusters(std::span<const WedgeTriangle> source, std::span<const std::uint32_t> wedges,
+                              std::span<const std::uint32_t> materials, const Clustering& clustering,
+                              std::vector<std::uint32_t> start) {
   // Places are dealt out in order, one after the other; what goes there is written side by side.
   std::vector<std::uint32_t> slot(source.size());
   for (std::size_t t = 0; t < source.size(); ++t) slot[t] = start[clustering.label[t]]++;
@@ -156,17 +155,13 @@ std::vector<std::uint32_t> BuildPool::fill_clusters(std::span<const WedgeTriangl
     for (std::size_t k = 0; !wedges.empty() && k < 3; ++k) triangle[k] = wedges[triangle[k]];
     triangle_material.set(slot[t], materials[t]);
   });
-  return slot;
 }
 
 void BuildPool::add_level0(const std::vector<WedgeTriangle>& source, const std::vector<std::uint32_t>& materials,
                            const Clustering& clustering) {
   std::vector<std::uint32_t> start = add_ranges(clustering, 0, GroupId());
   triangle_material.add(materials);
-  const std::vector<std::uint32_t> slot = fill_clusters(source, {}, materials, clustering, std::move(start));
-  level0_source.resize(source.size());
-  parallel_for_each_index(source.size(), kLoopGrain,
-                          [&](std::size_t t) { level0_source[slot[t]] = static_cast<std::uint32_t>(t); });
+  fill_clusters(source, {}, materials, clustering, std::move(start));
 }
 
 BuildPool::Ids BuildPool::find_known(const SimplifyResult& result) const {

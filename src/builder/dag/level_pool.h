@@ -4,7 +4,6 @@
 
 #include <array>
 #include <cstdint>
-#include <limits>
 #include <span>
 #include <utility>
 #include <vector>
@@ -30,10 +29,8 @@ struct BuildCluster {
 /// A group that has been replaced by coarser clusters.
 struct BuildGroup {
   std::uint32_t level = 0;
-  std::vector<ClusterId> clusters;                             ///< of BuildPool::clusters
-  std::uint32_t round = 0;                                     ///< in which it was replaced
-  double quadric_error = 0.0;                                  ///< the simplifier's own estimate, running maximum
-  double deviation = std::numeric_limits<double>::infinity();  ///< of an aggregate: what its coverage is off by
+  std::vector<ClusterId> clusters;  ///< of BuildPool::clusters
+  double quadric_error = 0.0;       ///< the simplifier's own estimate, of an aggregate its coverage's; running maximum
   bool is_terminal = false;
   bool is_aggregate = false;
   StuckReason stuck_reason = StuckReason::kNotStuck;
@@ -99,7 +96,6 @@ class BuildPool {
   std::vector<float> wedge_attributes;
   std::vector<WedgeTriangle> triangles;
   TriangleMaterials triangle_material;
-  std::vector<std::uint32_t> level0_source;  ///< per triangle of level 0, which come first: of the prepared mesh
   std::vector<BuildCluster> clusters;
   std::vector<BuildGroup> groups;
 
@@ -115,10 +111,9 @@ class BuildPool {
   /// Makes room for clusters; returns where the triangles of each go.
   std::vector<std::uint32_t> add_ranges(const Clustering& clustering, std::uint32_t level, GroupId own_group);
   /// `start`: of add_ranges. `wedges`: pool ids by the ids in `source`, or nothing where they are pool ids already.
-  /// \returns where each triangle went
-  std::vector<std::uint32_t> fill_clusters(std::span<const WedgeTriangle> source, std::span<const std::uint32_t> wedges,
-                                           std::span<const std::uint32_t> materials, const Clustering& clustering,
-                                           std::vector<std::uint32_t> start);
+  void fill_clusters(std::span<const WedgeTriangle> source, std::span<const std::uint32_t> wedges,
+                     std::span<const std::uint32_t> materials, const Clustering& clustering,
+                     std::vector<std::uint32_t> start);
 
   std::uint32_t position_id(const Vec3i& position);
   std::uint32_t wedge_id(std::uint32_t position, const float* attributes);

@@ -96,22 +96,23 @@ struct PaintedPoint {
   double area;  ///< twice the triangle's
 };
 
-/// Three of each triangle, or every so many of all of them.
+/// Three of each triangle, or one, each of the three in its turn.
 std::vector<PaintedPoint> choose_points(const GroupSurface& group) {
   constexpr std::array<Weights, 3> kPoints{
       {{2.0 / 3, 1.0 / 6, 1.0 / 6}, {1.0 / 6, 2.0 / 3, 1.0 / 6}, {1.0 / 6, 1.0 / 6, 2.0 / 3}}};
-  const std::uint32_t step = group.triangles.size() > kFewTriangles ? kPointStep : 1;
+  const bool is_large = group.triangles.size() > kFewTriangles;
   std::vector<PaintedPoint> points;
-  points.reserve(3 * group.triangles.size() / step + 1);
-  std::size_t count = 0;
+  points.reserve((is_large ? 1 : 3) * group.triangles.size());
   for (std::uint32_t t = 0; t < group.triangles.size(); ++t) {
     const auto& ids = group.triangles[t];
     const TriangleCorners corners{group.positions[ids[0]], group.positions[ids[1]], group.positions[ids[2]]};
     const Vec3d cross = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
     const double area = std::sqrt(glm::dot(cross, cross));
     if (!(area > 0.0)) continue;
-    for (const Weights& w : kPoints) {
-      if (count++ % step == 0) points.push_back({t, corners[0] * w.a + corners[1] * w.b + corners[2] * w.c, w, area});
+    for (std::size_t i = 0; i < kPoints.size(); ++i) {
+      if (is_large && i != t % 3) continue;
+      const Weights& w = kPoints[i];
+      points.push_back({t, corners[0] * w.a + corners[1] * w.b + corners[2] * w.c, w, area});
     }
   }
   return points;

@@ -19,7 +19,6 @@ struct SurfaceAttributes {
 };
 
 constexpr std::size_t kFewTriangles = 500;
-constexpr std::uint32_t kPointStep = 5;  ///< no multiple of three: each of a triangle's points has its turn
 
 /// Over the group's surface, weighed by area. 0 for an attribute that the layout has not.
 struct AttributeDeviation {
@@ -29,8 +28,8 @@ struct AttributeDeviation {
 
 /// Compares the group's attributes with the source's where the source is nearest: at three points of each triangle of
 /// the group (Hammer, Marlowe and Stroud 1956, exact for squares of linear functions), of more than kFewTriangles at
-/// every kPointStep-th of them. What comes of it is a mean and a quantile, which a few hundred points tell to some
-/// percent. `near` is GroupDeviation::places, or nothing.
+/// one of the three. What comes of it is a mean and a quantile, which a few hundred points tell to some percent. `near`
+/// is GroupDeviation::places, or nothing.
 [[nodiscard]] AttributeDeviation measure_attributes(const SourceTree& source,
                                                     const SurfaceAttributes& source_attributes,
                                                     const GroupSurface& group,

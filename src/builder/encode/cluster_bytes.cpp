@@ -10,6 +10,7 @@
 #include <span>
 #include <string>
 
+#include "builder/encode/attribute_steps.h"
 #include "builder/encode/bit_stream.h"
 #include "builder/encode/fits.h"
 #include "builder/encode/quantize_normal.h"
@@ -22,11 +23,6 @@ namespace {
 
 Error limit_error(std::string detail) {
   return {ErrorCode::kBuildFailed, "", std::move(detail)};
-}
-
-std::int32_t quantize_color(float value) {
-  if (!(value > 0.0F)) return 0;  // NaN too
-  return static_cast<std::int32_t>(std::floor(std::min(double(value), 1.0) * 255.0 + 0.5));
 }
 
 Status check_cluster(const LodDag& dag, const DagCluster& cluster) {

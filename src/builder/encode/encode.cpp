@@ -15,9 +15,9 @@
 
 #include "base/parallel.h"
 #include "base/release.h"
+#include "builder/encode/attribute_steps.h"
 #include "builder/encode/cluster_bytes.h"
 #include "builder/encode/quantize_normal.h"
-#include "builder/encode/uv_grid.h"
 
 namespace meshlode::builder {
 
@@ -45,19 +45,11 @@ float to_float_up(double value) {
 ChannelPlan plan_channels(const PreparedMesh& mesh, const LodDag& dag, const EncodeOptions& options) {
   ChannelPlan plan;
   plan.layout = mesh.layout;
-  plan.normal_scale = mesh.layout.has_normal ? normal_scale_of(options) : 0;
   plan.strip_trials = options.strip_trials;
   plan.mixed_strip_trials = options.mixed_strip_trials;
-  const std::size_t stride = mesh.layout.stride();
-  for (std::uint32_t set = 0; set < mesh.layout.uv_set_count; ++set) {
-    UvRange range;
-    for (std::size_t at = mesh.layout.uv_offset() + 2U * set; at < dag.vertex_attributes.size(); at += stride) {
-      range.add(dag.vertex_attributes[at]);
-      range.add(dag.vertex_attributes[at + 1]);
-    }
-    const double error = options.uv_error[set];
-    plan.uv_log2[set] = choose_uv_log2(range, error > 0.0 ? error : default_uv_error(range));
-  }
+  const AttributeSteps steps = dag.steps ? *dag.steps : choose_steps(mesh.layout, dag, options);
+  plan.normal_scale = steps.normal_scale;
+  plan.uv_log2 = steps.uv_log2;
   const auto& material = dag.triangle_material;
   const bool is_one = std::adjacent_find(material.begin(), material.end(), std::not_equal_to<>()) == material.end();
   plan.material = !material.empty() && is_one ? material.front() : format::kNone;
@@ -112,11 +104,7 @@ format::GroupRecord group_record(const DagGroup& group, const Hierarchy::Sphere&
   format::GroupRecord record{};
   std::copy(std::begin(sphere.center), std::end(sphere.center), std::begin(record.center));
   record.radius = sphere.radius;
-  record.error = group.is_terminal ? format::kInfiniteError : to_stored_error(error);
-  record.quadric_error = group.is_terminal ? format::kInfiniteError : to_stored_error(group.quadric_error);
-  record.deviation = to_float_up(group.deviation);
-  record.normal_deviation = group.is_terminal ? format::kInfiniteError : to_float_up(group.normal_deviation);
-  record.uv_deviation = group.is_terminal ? format::kInfiniteError : to_float_up(group.uv_deviation);
+  put_errors(group, error, record);
   record.first_cluster = group.first_cluster;
   record.cluster_count = static_cast<std::uint16_t>(group.cluster_count);
   record.level = static_cast<std::uint16_t>(group.level);
@@ -325,6 +313,14 @@ Status check_uv_steps(const PreparedMesh& mesh, const ChannelPlan& plan, const E
 std::int32_t normal_scale_of(const EncodeOptions& options) {
   return static_cast<std::int32_t>(
       std::min(octahedral_scale_for(options.normal_error), std::uint64_t{format::kMaxNormalScale}));
+}
+
+void put_errors(const DagGroup& group, float error, format::GroupRecord& record) {
+  record.error = group.is_terminal ? format::kInfiniteError : to_stored_error(error);
+  record.quadric_error = group.is_terminal ? format::kInfiniteError : to_stored_error(group.quadric_error);
+  record.deviation = to_float_up(group.deviation);
+  record.normal_deviation = group.is_terminal ? format::kInfiniteError : to_float_up(group.normal_deviation);
+  record.uv_deviation = group.is_terminal ? format::kInfiniteError : to_float_up(group.uv_deviation);
 }
 
 bool has_aggregates(std::span<const format::GroupRecord> groups) {

@@ -49,6 +49,9 @@ struct EncodedMesh {
   std::vector<format::PromiseGroupRecord> promise_errors;  ///< one a group, or none: positions alone are promised
 };
 
+/// What a group's errors are stored as; `error` is the nested one (Hierarchy::group_errors).
+void put_errors(const DagGroup& group, float error, format::GroupRecord& record);
+
 /// Whether something of them is drawn instead of an aggregate's pieces. A mesh that ended at level 0 has none.
 [[nodiscard]] bool has_aggregates(std::span<const format::GroupRecord> groups);
 

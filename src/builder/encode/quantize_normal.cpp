@@ -15,6 +15,14 @@ using Lattice = std::array<std::int32_t, 3>;
 /// point across a coordinate plane never has the larger dot product, so the search may stay in the octant.
 Lattice nearest_in_octant(double x, double y, double z, std::int32_t m) {
   const double to_plane = m / (x + y + z);
+  // One that is such a point but for the rounding of its floats, as what was snapped before is.
+  constexpr double kOnPoint = 1.0 / 64;
+  const double near_x = std::floor(x * to_plane + 0.5), near_y = std::floor(y * to_plane + 0.5);
+  if (std::abs(x * to_plane - near_x) < kOnPoint && std::abs(y * to_plane - near_y) < kOnPoint &&
+      near_x + near_y <= m) {
+    return {static_cast<std::int32_t>(near_x), static_cast<std::int32_t>(near_y),
+            m - static_cast<std::int32_t>(near_x + near_y)};
+  }
   const auto x0 = static_cast<std::int32_t>(std::floor(x * to_plane));
   const auto y0 = static_cast<std::int32_t>(std::floor(y * to_plane));
   // Seen from the origin the lattice is stretched by up to sqrt(3) at the octahedron's tips, so the nearest point need
@@ -51,6 +59,12 @@ std::array<std::int32_t, 3> nearest_octahedral_point(const Vec3f& normal, std::i
   const double largest = std::max({std::abs(x), std::abs(y), std::abs(z)});  // scaled: no square leaves double's range
   const Lattice p = nearest_in_octant(std::abs(x) / largest, std::abs(y) / largest, std::abs(z) / largest, scale);
   return {with_sign_of(p[0], x), with_sign_of(p[1], y), with_sign_of(p[2], z)};
+}
+
+Vec3d octahedral_normal(const std::array<std::int32_t, 3>& point) {
+  const Vec3d n(point[0], point[1], point[2]);
+  const double length = std::sqrt((n.x * n.x + n.y * n.y) + n.z * n.z);
+  return {n.x / length, n.y / length, n.z / length};
 }
 
 std::array<std::int32_t, 2> chart_coordinates(const std::array<std::int32_t, 3>& point, std::uint32_t chart,

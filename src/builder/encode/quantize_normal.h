@@ -15,6 +15,9 @@ namespace meshlode::builder {
 /// Zero and non-finite normals become +z. \pre scale >= 1
 [[nodiscard]] std::array<std::int32_t, 3> nearest_octahedral_point(const Vec3f& normal, std::int32_t scale);
 
+/// The direction of such a point, as long as 1: what readers get, before it is rounded to floats.
+[[nodiscard]] Vec3d octahedral_normal(const std::array<std::int32_t, 3>& point);
+
 /// The two stored values, each 0 … 2 · scale, of a point in one of the six charts (docs/format.md, Normals). Where the
 /// unfolding has two spellings, the non-negative side is taken.
 [[nodiscard]] std::array<std::int32_t, 2> chart_coordinates(const std::array<std::int32_t, 3>& point,

@@ -99,10 +99,9 @@ std::vector<format::NodeRecord> lay_out(const std::vector<TreeNode>& tree, std::
   return nodes;
 }
 
-void set_bound(format::NodeRecord& node, const Hierarchy::Sphere& sphere, float error) {
+void set_sphere(format::NodeRecord& node, const Hierarchy::Sphere& sphere) {
   std::copy(sphere.center, sphere.center + 3, node.center);
   node.radius = sphere.radius;
-  node.error = error;
 }
 
 }  // namespace
@@ -137,18 +136,30 @@ std::vector<format::NodeRecord> build_bvh(std::span<const Hierarchy::Sphere> sph
   for (std::size_t i = nodes.size(); i-- > 0;) {
     format::NodeRecord& node = nodes[i];
     if (node.child_count == 0) {
-      set_bound(node, spheres[node.first], errors[node.first]);
+      set_sphere(node, spheres[node.first]);
       continue;
     }
     inner.clear();
-    float error = 0.0F;
     for (std::uint32_t c = node.first; c < node.first + node.child_count; ++c) {
       inner.push_back({{nodes[c].center[0], nodes[c].center[1], nodes[c].center[2]}, nodes[c].radius});
-      error = std::max(error, nodes[c].error);
     }
-    set_bound(node, enclose_spheres(inner), error >= format::kInfiniteError ? error : grow_error(0.0, error));
+    set_sphere(node, enclose_spheres(inner));
   }
+  set_node_errors(errors, nodes);
   return nodes;
+}
+
+void set_node_errors(std::span<const float> errors, std::span<format::NodeRecord> nodes) {
+  for (std::size_t i = nodes.size(); i-- > 0;) {
+    format::NodeRecord& node = nodes[i];
+    if (node.child_count == 0) {
+      node.error = errors[node.first];
+      continue;
+    }
+    float error = 0.0F;
+    for (std::uint32_t c = node.first; c < node.first + node.child_count; ++c) error = std::max(error, nodes[c].error);
+    node.error = error >= format::kInfiniteError ? error : grow_error(0.0, error);
+  }
 }
 
 }  // namespace meshlode::builder

@@ -19,4 +19,7 @@ namespace meshlode::builder {
                                                         std::span<const float> errors,
                                                         std::span<const std::uint32_t> levels);
 
+/// Other errors in a tree whose ids are as build_bvh() has them: children behind their parents.
+void set_node_errors(std::span<const float> errors, std::span<format::NodeRecord> nodes);
+
 }  // namespace meshlode::builder

@@ -58,11 +58,25 @@ float grow_error(double error, float finer) {
   return grown > 0.0 ? std::max(kMinStoredError, float_above(grown)) : 0.0F;
 }
 
+std::vector<float> nest_errors(const LodDag& dag) {
+  std::vector<float> errors(dag.groups.size());
+  for (std::size_t g = errors.size(); g-- > 0;) {  // from coarse to fine as they lie: the finer ones are behind
+    const DagGroup& group = dag.groups[g];
+    float finer = 0.0F;
+    for (std::uint32_t c = group.first_cluster; c < group.first_cluster + group.cluster_count; ++c) {
+      const GroupId own = dag.clusters[c].own_group;
+      if (own.is_valid()) finer = std::max(finer, errors[own.value]);
+    }
+    errors[g] = group.is_terminal ? format::kInfiniteError : grow_error(group.error, finer);
+  }
+  return errors;
+}
+
 LodBounds nest_lod_bounds(const LodDag& dag, std::span<const Hierarchy::Sphere> culling, EnclosingBall enclose) {
   const std::size_t group_count = dag.groups.size();
   LodBounds bounds;
   bounds.spheres.resize(group_count);
-  bounds.errors.resize(group_count);
+  bounds.errors = nest_errors(dag);
   const Lists made = list_by_key(dag.clusters.size(), group_count, [&](std::size_t c) {
     const GroupId own = dag.clusters[c].own_group;
     return own.is_valid() ? own.value : kNoId;
@@ -90,14 +104,9 @@ LodBounds nest_lod_bounds(const LodDag& dag, std::span<const Hierarchy::Sphere> 
       }
       std::sort(finer_groups.begin(), finer_groups.end());
       finer_groups.erase(std::unique(finer_groups.begin(), finer_groups.end()), finer_groups.end());
-      float finer_error = 0.0F;
-      for (const std::uint32_t f : finer_groups) {
-        inner.push_back(bounds.spheres[f]);
-        finer_error = std::max(finer_error, bounds.errors[f]);
-      }
+      for (const std::uint32_t f : finer_groups) inner.push_back(bounds.spheres[f]);
       for (const std::uint32_t c : made.of(g)) inner.push_back(culling[c]);
       bounds.spheres[g] = enclose_spheres(inner, enclose);
-      bounds.errors[g] = group.is_terminal ? format::kInfiniteError : grow_error(group.error, finer_error);
     });
   }
   return bounds;

@@ -26,6 +26,9 @@ struct LodBounds {
 [[nodiscard]] Hierarchy::Sphere enclose_spheres(std::span<const Hierarchy::Sphere> inner,
                                                 EnclosingBall enclose = enclosing_ball);
 
+/// LodBounds::errors alone: spheres do not depend on errors.
+[[nodiscard]] std::vector<float> nest_errors(const LodDag& dag);
+
 /// The error of something coarser than `finer`: at least `error`, and grown where `finer` is not 0.
 [[nodiscard]] float grow_error(double error, float finer);
 

@@ -14,6 +14,7 @@
 #include "base/release.h"
 #include "builder/deviation/attribute_deviation.h"
 #include "builder/deviation/deviation.h"
+#include "builder/measure/canonical_form.h"
 #include "builder/measure/groups_by_level.h"
 #include "builder/measure/kept_samples.h"
 #include "builder/measure/shared_positions.h"
@@ -25,7 +26,7 @@ namespace {
 
 /// Carried on at least: where few triangles stand for many vanished pieces, each stands for more than two samples say.
 constexpr std::size_t kSamplesPerGroup = 4096;
-/// Spread over the groups of a round: coarse rounds have few, of large triangles, and cost next to nothing.
+/// Spread over the groups of a level: coarse levels have few, of large triangles, and cost next to nothing.
 constexpr std::size_t kExtraEffort = 1500;
 
 /// Clusters of the DAG as one surface, off the grid. Positions are in the order of their ids.
@@ -36,8 +37,8 @@ struct ClusterSurface {
   std::vector<WedgeTriangle> vertices;             ///< the same triangles, of LodDag's vertices
   std::vector<std::uint32_t> first_of_cluster{0};  ///< triangles; one more than clusters
 
-  template <class Clusters>
-  ClusterSurface(const PreparedMesh& mesh, const LodDag& dag, const Clusters& clusters) {
+  ClusterSurface(const PreparedMesh& mesh, const LodDag& dag, std::span<const std::uint32_t> position_of_vertex,
+                 std::span<const std::uint32_t> clusters) {
     std::size_t count = 0;
     for (const std::uint32_t c : clusters) count += dag.clusters[c].triangle_count;
     triangles.reserve(count);
@@ -51,7 +52,7 @@ struct ClusterSurface {
         WedgeTriangle of_dag{};
         for (std::size_t k = 0; k < 3; ++k) {
           of_dag[k] = cluster.first_vertex + dag.triangles[t][k];
-          corners[k] = ids.add(dag.vertex_position_id[of_dag[k]]);
+          corners[k] = ids.add(position_of_vertex[of_dag[k]]);
           if (corners[k] == on_grid.size()) on_grid.push_back(dag.vertex_position[of_dag[k]]);
         }
         triangles.push_back(corners);
@@ -81,78 +82,45 @@ std::vector<std::uint32_t> members_of(const DagGroup& group) {
   return clusters;
 }
 
-/// Groups that are not terminal, by the round that replaced them. Members of each come from rounds before.
-std::vector<std::vector<std::uint32_t>> groups_by_round(const LodDag& dag) {
-  std::vector<std::vector<std::uint32_t>> rounds;
-  for (std::uint32_t g = 0; g < dag.groups.size(); ++g) {
-    const DagGroup& group = dag.groups[g];
-    if (group.is_terminal) continue;
-    if (group.round >= rounds.size()) rounds.resize(std::size_t{group.round} + 1);
-    rounds[group.round].push_back(g);
-  }
-  return rounds;
-}
-
 /// Level by level: each group hands what it knows to the clusters that replace it.
 class Measurer {
  public:
-  Measurer(const PreparedMesh& mesh, format::ErrorTier tier, LodDag& dag)
+  Measurer(const PreparedMesh& mesh, format::ErrorTier tier, const CanonicalForm& form, LodDag& dag)
       : mesh_(mesh),
         dag_(dag),
+        form_(form),
         is_certified_(tier == format::ErrorTier::kCertified),
         source_(mesh.exact_positions, mesh.exact_triangles),
-        source_vertices_(mesh.exact_triangles.size()),
         made_of_(clusters_made_of_groups(dag)),
-        use_(dag) {
+        use_(dag, form.position_of_vertex, form.position_count) {
     is_certified_ ? bound_level0() : sample_level0();
   }
 
   void run() {
-    for (const std::vector<std::uint32_t>& groups : groups_by_round(dag_)) {
+    for (std::vector<std::uint32_t>& groups : groups_by_level(dag_)) {
+      std::erase_if(groups, [&](std::uint32_t g) { return dag_.groups[g].is_terminal; });
       if (groups.empty()) continue;
-      use_.begin(dag_.groups[groups.front()].round);
+      use_.begin(dag_.groups[groups.front()].level);
       parallel_for_each_index(groups.size(), 1, [&](std::size_t i) { measure_group_at(groups[i], groups.size()); });
     }
   }
 
  private:
-  /// Calls visit(cluster, triangle of the DAG, triangle of the source) for all of level 0.
-  template <class Visit>
-  void for_each_of_level0(const Visit& visit) const {
-    std::size_t next = 0;
-    for (std::uint32_t c = 0; c < dag_.clusters.size(); ++c) {
-      const DagCluster& cluster = dag_.clusters[c];
-      if (cluster.own_group.is_valid()) continue;
-      for (std::uint32_t i = 0; i < cluster.triangle_count; ++i) {
-        visit(c, cluster.first_triangle + i, dag_.level0_source[next++]);
-      }
-    }
-  }
-
   void bound_level0() {
     bounds_.resize(dag_.triangles.size());
-    for_each_of_level0([&](std::uint32_t c, std::uint32_t t, std::uint32_t source) {
+    for (std::size_t t = 0; t < mesh_.exact_triangles.size(); ++t) {
       TriangleCorners3 exact, on_grid;
       for (std::size_t k = 0; k < 3; ++k) {
-        const std::uint32_t vertex = dag_.clusters[c].first_vertex + dag_.triangles[t][k];
-        source_vertices_[source][k] = vertex;
-        exact[k] = mesh_.exact_positions[mesh_.exact_triangles[source][k]];
-        on_grid[k] = mesh_.grid.decode(dag_.vertex_position[vertex]);
+        exact[k] = mesh_.exact_positions[mesh_.exact_triangles[t][k]];
+        on_grid[k] = mesh_.grid.decode(dag_.vertex_position[form_.vertices_of_source[t][k]]);
       }
-      bounds_[t] = initial_bound(exact, on_grid);
-    });
+      bounds_[form_.level0_of_source[t].triangle] = initial_bound(exact, on_grid);
+    }
   }
 
   void sample_level0() {
     samples_.resize(dag_.clusters.size());
-    std::vector<std::uint32_t> cluster_of_source(mesh_.exact_triangles.size());
-    for_each_of_level0([&](std::uint32_t c, std::uint32_t t, std::uint32_t source) {
-      cluster_of_source[source] = c;
-      for (std::size_t k = 0; k < 3; ++k) {
-        source_vertices_[source][k] = dag_.clusters[c].first_vertex + dag_.triangles[t][k];
-      }
-    });
-    keep(initial_samples(source_), [&](std::uint32_t triangle) { return cluster_of_source[triangle]; });
+    keep(initial_samples(source_), [&](std::uint32_t triangle) { return form_.level0_of_source[triangle].cluster; });
   }
 
   /// Samples go to the clusters of their triangles, in their order.
@@ -177,7 +145,7 @@ class Measurer {
     for (std::size_t i = 0; i < carried.size(); ++i) samples_[cluster[i]].add(carried[i]);
   }
 
-  void measure_group_at(std::uint32_t id, std::size_t groups_of_round) {
+  void measure_group_at(std::uint32_t id, std::size_t groups_of_level) {
     DagGroup& group = dag_.groups[id];
     group.normal_deviation = group.uv_deviation = 0.0;
     double floor = mesh_.level0_deviation;
@@ -189,15 +157,19 @@ class Measurer {
       group.normal_deviation = std::max(group.normal_deviation, finer.normal_deviation);
       group.uv_deviation = std::max(group.uv_deviation, finer.uv_deviation);
     }
-    const ClusterSurface before(mesh_, dag_, members_of(group)), after(mesh_, dag_, made_of_[id]);
+    const ClusterSurface before = surface_of(members_of(group)), after = surface_of(made_of_[id]);
     const std::vector<TreeSlot> places = is_certified_
                                              ? certify(group, before, id, after, floor)
-                                             : measure_samples(group, before, id, after, floor, groups_of_round);
+                                             : measure_samples(group, before, id, after, floor, groups_of_level);
     const AttributeDeviation attributes =
-        measure_attributes(source_, {dag_.vertex_attributes, source_vertices_}, after.surface(),
+        measure_attributes(source_, {dag_.vertex_attributes, form_.vertices_of_source}, after.surface(),
                            {dag_.vertex_attributes, after.vertices}, mesh_.layout, places);
     group.normal_deviation = std::max(group.normal_deviation, attributes.normal);
     group.uv_deviation = std::max(group.uv_deviation, attributes.uv);
+  }
+
+  [[nodiscard]] ClusterSurface surface_of(std::span<const std::uint32_t> clusters) const {
+    return {mesh_, dag_, form_.position_of_vertex, clusters};
   }
 
   std::vector<TreeSlot> certify(DagGroup& group, const ClusterSurface& before, std::uint32_t id,
@@ -218,7 +190,7 @@ class Measurer {
   }
 
   std::vector<TreeSlot> measure_samples(DagGroup& group, const ClusterSurface& before, std::uint32_t id,
-                                        const ClusterSurface& after, double floor, std::size_t groups_of_round) {
+                                        const ClusterSurface& after, double floor, std::size_t groups_of_level) {
     std::vector<CarriedSample> samples;
     for (std::uint32_t c = group.first_cluster; c < group.first_cluster + group.cluster_count; ++c) {
       samples_[c].append_to(samples, mesh_.exact_positions);
@@ -235,7 +207,7 @@ class Measurer {
                                              .least = floor / kMeasuredMargin,
                                              .margin = kMeasuredMargin,
                                              .samples_per_triangle = std::clamp(per_triangle, 2U, 64U),
-                                             .extra_effort = static_cast<std::uint32_t>(kExtraEffort / groups_of_round),
+                                             .extra_effort = static_cast<std::uint32_t>(kExtraEffort / groups_of_level),
                                              .finer = before.surface(),
                                              .finer_is_shared = is_shared,
                                              .is_whole = use_.is_one_group()});
@@ -248,36 +220,52 @@ class Measurer {
 
   const PreparedMesh& mesh_;
   LodDag& dag_;
+  const CanonicalForm& form_;
   bool is_certified_;
   SourceTree source_;
-  std::vector<WedgeTriangle> source_vertices_;  ///< per source triangle: its corners in level 0, of LodDag's vertices
   std::vector<std::vector<std::uint32_t>> made_of_;
-  RoundUse use_;
+  LevelUse use_;
   std::vector<KeptSamples> samples_;   ///< per cluster; kMeasured
   std::vector<TriangleBound> bounds_;  ///< per triangle of the DAG; kCertified
 };
 
 /// What coverage is off by is found when the DAG is made; a tier adds its margin.
 void add_margin(format::ErrorTier tier, LodDag& dag) {
+  if (tier == format::ErrorTier::kQem) return;
   for (DagGroup& group : dag.groups) {
     if (group.is_terminal) continue;
+    group.deviation = group.quadric_error;
     if (tier == format::ErrorTier::kMeasured) group.error = kMeasuredMargin * group.quadric_error;
-    if (tier == format::ErrorTier::kQem) group.deviation = std::numeric_limits<double>::infinity();
+  }
+}
+
+/// What an asset can tell again: the simplifier's estimate as it is stored, and that nothing is measured.
+void forget_errors(LodDag& dag) {
+  for (DagGroup& group : dag.groups) {
+    if (!group.is_terminal && group.quadric_error < double{format::kInfiniteError}) {
+      group.quadric_error = static_cast<float>(group.quadric_error);
+    }
+    group.error = group.quadric_error;
+    group.deviation = group.normal_deviation = group.uv_deviation = std::numeric_limits<double>::infinity();
   }
 }
 
 }  // namespace
 
-void measure(const PreparedMesh& mesh, format::ErrorTier tier, LodDag& dag) {
+Status measure(const PreparedMesh& mesh, format::ErrorTier tier, LodDag& dag) {
+  forget_errors(dag);
   const bool is_aggregate =
       std::any_of(dag.groups.begin(), dag.groups.end(), [](const DagGroup& group) { return group.is_aggregate; });
-  if (is_aggregate) {
-    add_margin(tier, dag);
-  } else if (tier != format::ErrorTier::kQem && !dag.triangles.empty()) {
-    Measurer(mesh, tier, dag).run();
-    if (tier == format::ErrorTier::kMeasured) hold_to_whole_cuts(mesh, kMeasuredMargin, dag);
-  }
-  release(dag.vertex_position_id, dag.level0_source);
+  if (is_aggregate) add_margin(tier, dag);
+  if (is_aggregate || tier == format::ErrorTier::kQem || dag.triangles.empty()) return Ok{};
+  Result<CanonicalForm> form = canonical_form(mesh, dag);
+  if (!form) return form.error();
+  dag.triangles.swap(form->triangles);
+  Measurer(mesh, tier, *form, dag).run();
+  release(form->position_of_vertex, form->level0_of_source, form->vertices_of_source);
+  if (tier == format::ErrorTier::kMeasured) hold_to_whole_cuts(mesh, kMeasuredMargin, dag);
+  dag.triangles.swap(form->triangles);
+  return Ok{};
 }
 
 }  // namespace meshlode::builder

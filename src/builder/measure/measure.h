@@ -4,6 +4,7 @@
 #pragma once
 
 #include <meshlode/format.h>
+#include <meshlode/result.h>
 
 #include "builder/lod_dag.h"
 #include "builder/prepared.h"
@@ -16,12 +17,14 @@ constexpr double kMeasuredMargin = 1.02;
 
 /// Sets error, deviation, normal_deviation and uv_deviation of the groups that are not terminal, in object units,
 /// degrees and UV units; errors never fall from fine to coarse (I4). Where errors come from (I7, docs/architecture.md):
-///   kQem        the simplifier's own estimate: the DAG stays as build_dag() made it
+///   kQem        the simplifier's own estimate, as the file stores it
 ///   kMeasured   the deviation from the source, as samples find it, of groups and then of whole cuts
 ///   kCertified  an upper bound of the deviation
-/// A group of an aggregate (DagGroup::is_aggregate) keeps what its coverage is off by, with the tier's margin. Frees
-/// vertex_position_id and level0_source of the DAG. The same for any thread count (I10).
-/// \pre `mesh` has its frame, its layout and its exact triangles
-void measure(const PreparedMesh& mesh, format::ErrorTier tier, LodDag& dag);
+/// A group of an aggregate (DagGroup::is_aggregate) keeps what its coverage is off by, with the tier's margin. What
+/// comes of it depends on the geometry alone (canonical_form()), so that what an asset decodes to gets the errors that
+/// its build had: attributes are to be as they are stored (snap_attributes()). The same for any thread count (I10).
+/// Error: kCheckFailed where the DAG's level 0 is another surface than the mesh's; cannot be of a DAG made from it.
+/// \pre `mesh` has its frame, its layout and, unless the tier is kQem, its exact triangles
+[[nodiscard]] Status measure(const PreparedMesh& mesh, format::ErrorTier tier, LodDag& dag);
 
 }  // namespace meshlode::builder

@@ -95,6 +95,17 @@ Box box_of_corners(const Corners& corners) {
   return all;
 }
 
+Status take_frame(const Box& box, const GridFrame& frame, PreparedMesh& mesh) {
+  mesh.origin = frame.origin;
+  mesh.grid = frame.grid;
+  const double reach = frame.grid.step() * format::kMaxGridCoordinate;
+  for (int k = 0; k < 3; ++k) {
+    if (box.low[k] - frame.origin[k] >= -reach && box.high[k] - frame.origin[k] <= reach) continue;
+    return Error{ErrorCode::kCheckFailed, {}, "it reaches beyond the grid"};
+  }
+  return Ok{};
+}
+
 /// Grid and origin from the bounds of the source.
 Status choose_frame(const Corners& corners, const PrepareOptions& options, PreparedMesh& mesh) {
   const Box all = box_of_corners(corners);
@@ -109,6 +120,7 @@ Status choose_frame(const Corners& corners, const PrepareOptions& options, Prepa
   if (largest_half > 0.0 && mesh.diagonal < kSmallestDiagonal) {
     return Error{ErrorCode::kUnsupported, {}, "its extent vanishes from a double when squared"};
   }
+  if (options.frame) return take_frame(all, *options.frame, mesh);
   const Result<format::PositionGrid> grid =
       choose_grid(largest_half, mesh.diagonal, median_edge_length(corners), options);
   if (!grid) return grid.error();

@@ -7,6 +7,8 @@
 // apart.
 #pragma once
 
+#include <optional>
+
 #include <meshlode/result.h>
 
 #include "builder/prepared.h"
@@ -14,7 +16,14 @@
 
 namespace meshlode::builder {
 
+/// Where a mesh's grid lies.
+struct GridFrame {
+  Vec3d origin{0.0};
+  format::PositionGrid grid;
+};
+
 struct PrepareOptions {
+  std::optional<GridFrame> frame;   ///< that of an asset, instead of one chosen from what is below
   bool separates_needles = true;    ///< thin triangles that the grid would flatten (separate_needles.h)
   bool locks_borders = false;       ///< PreparedMesh::is_border_locked
   bool keeps_flat_normals = false;  ///< exact_normals, where the layout's are flat
@@ -40,7 +49,8 @@ struct GridPlan {
 [[nodiscard]] Result<GridPlan> plan_grid(const scene::SourceMesh& mesh, const PrepareOptions& options);
 
 /// Errors: kUnsupported (the grid needs more than 24 bits, or its step leaves the range of floats; the extent is more
-/// than culling spheres hold, or too large or too small for a double to square), kInvalid (a position is not finite).
+/// than culling spheres hold, or too large or too small for a double to square), kInvalid (a position is not finite),
+/// kCheckFailed (it reaches beyond the frame that is given).
 [[nodiscard]] Result<PreparedMesh> prepare_mesh(const scene::SourceMesh& mesh, const AttributeLayout& layout,
                                                 const PrepareOptions& options);
 

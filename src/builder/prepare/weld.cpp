@@ -112,7 +112,7 @@ VertexIds weld_vertices(const Corners& corners, std::span<const Vec3i> points, c
   const Begins all = before.back();
   parallel_all([&] { mesh.positions.resize(all.points); }, [&] { mesh.wedge_position.resize(all.wedges); },
                [&] { mesh.wedge_attributes.resize(std::size_t{all.wedges} * stride); },
-               [&] { mesh.exact_positions.resize(all.exacts); });
+               [&] { mesh.exact_positions.resize(all.exacts); }, [&] { mesh.exact_on_grid.resize(all.exacts); });
   ids.wedge_of_exact.resize(all.exacts);
   parallel_for_each_chunk(order.size(), kLength, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
     Begins so_far = before[chunk];
@@ -130,6 +130,7 @@ VertexIds weld_vertices(const Corners& corners, std::span<const Vec3i> points, c
       if (begun.exacts != 0) {
         ids.wedge_of_exact[exact] = wedge;
         mesh.exact_positions[exact] = corners.positions[v] - mesh.origin;
+        mesh.exact_on_grid[exact] = points[v];
       }
       ids.exact_of[v] = exact;
     }

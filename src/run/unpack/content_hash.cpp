@@ -2,6 +2,7 @@
 #include "run/unpack/content_hash.h"
 
 #include <array>
+#include <cstring>
 
 #include "run/unpack/unpack.h"
 
@@ -16,7 +17,7 @@ void add(Hasher& hasher, const T& value) {
 
 }  // namespace
 
-Result<Hash128> hash_asset_content(const Asset& asset) {
+Result<Hash128> hash_asset_content(const Asset& asset, const OtherBytes& other) {
   using enum format::SectionId;
   Hasher hasher;
   add(hasher, asset.header().version);
@@ -39,7 +40,8 @@ Result<Hash128> hash_asset_content(const Asset& asset) {
           add(hasher, blob);
         }
       } else {
-        hasher.update(asset.section_bytes(entry));
+        const std::span<const std::uint8_t> bytes = other ? other(entry) : std::span<const std::uint8_t>();
+        hasher.update(bytes.empty() ? asset.section_bytes(entry) : bytes);
       }
     }
   };
@@ -57,6 +59,19 @@ Result<Hash128> hash_asset_content(const Asset& asset) {
   add_section(kPromises);  // nothing where the file has none
   add_section(kPromiseErrors);
   return hasher.digest();
+}
+
+Hash128 stated_hash(const Asset& asset) {
+  Hash128 hash{};
+  std::memcpy(hash.data(), asset.header().content_hash, hash.size());
+  return hash;
+}
+
+Status check_content_hash(const Asset& asset) {
+  const auto hash = hash_asset_content(asset);
+  if (!hash) return hash.error();
+  if (*hash == stated_hash(asset)) return Ok{};
+  return Error{ErrorCode::kInvalid, "header, field content_hash", "is not that of the content"};
 }
 
 }  // namespace meshlode::run

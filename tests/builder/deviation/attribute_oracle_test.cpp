@@ -84,14 +84,14 @@ AttributeDeviation expected_deviation(const ShadedSurface& source, const ShadedS
   constexpr long double kMost = 2.0L / 3.0L, kLeast = 1.0L / 6.0L;
   long double total = 0.0L, chords2 = 0.0L;
   std::array<std::vector<std::pair<long double, long double>>, 2> uv_errors;
-  std::size_t points = 0;
   for (std::size_t t = 0; t < group.triangles.size(); ++t) {
     const Long3 cross = glm::cross(group.at(t, 1) - group.at(t, 0), group.at(t, 2) - group.at(t, 0));
     const long double area = std::sqrt(glm::dot(cross, cross));
     if (area == 0.0L) continue;
-    for (const Shares& w :
-         {Shares{kMost, kLeast, kLeast}, Shares{kLeast, kMost, kLeast}, Shares{kLeast, kLeast, kMost}}) {
-      if (points++ % (group.triangles.size() > kFewTriangles ? kPointStep : 1) != 0) continue;
+    const std::array all{Shares{kMost, kLeast, kLeast}, Shares{kLeast, kMost, kLeast}, Shares{kLeast, kLeast, kMost}};
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      if (group.triangles.size() > kFewTriangles && i != t % 3) continue;
+      const Shares& w = all[i];
       const auto [at, there] = below(source, group.at(t, 0) * w[0] + group.at(t, 1) * w[1] + group.at(t, 2) * w[2]);
       const Long3 chord = group.normal(t, w) - source.normal(at, there);
       total += area;

@@ -53,7 +53,7 @@ AttributeDeviation compare(const Sheet& group) {
                             {group.positions, group.triangles}, {group.attributes, group.triangles}, layout());
 }
 
-// 200 triangles and 3,200: the second is looked at in every kPointStep-th point.
+// 200 triangles and 3,200: the second is looked at in one point of each.
 constexpr std::uint32_t kSides[] = {10, 40};
 static_assert(2 * kSides[0] * kSides[0] <= kFewTriangles && 2 * kSides[1] * kSides[1] > kFewTriangles);
 

@@ -3,12 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <vector>
 
 #include <gtest/gtest.h>
 #include <tbb/task_arena.h>
 
+#include "base/random.h"
 #include "builder/dag/build_dag.h"
+#include "builder/encode/attribute_steps.h"
 #include "builder/plan/plan.h"
 #include "builder/prepare/prepare.h"
 #include "lab/samples/samples.h"
@@ -37,8 +40,12 @@ Built build(const scene::Primitive& shape) {
 
 LodDag measured(const Built& built, ErrorTier tier) {
   LodDag dag = built.dag;
-  measure(built.mesh, tier, dag);
+  EXPECT_TRUE(measure(built.mesh, tier, dag));
   return dag;
+}
+
+double as_stored(double quadric_error) {
+  return std::isinf(quadric_error) ? quadric_error : double{static_cast<float>(quadric_error)};
 }
 
 TEST(Measure, ChangesErrorsAlone) {
@@ -50,10 +57,10 @@ TEST(Measure, ChangesErrorsAlone) {
     EXPECT_EQ(dag.triangles, built.dag.triangles);
     ASSERT_EQ(dag.groups.size(), built.dag.groups.size());
     for (std::size_t g = 0; g < dag.groups.size(); ++g) {
-      EXPECT_EQ(dag.groups[g].quadric_error, built.dag.groups[g].quadric_error);
+      EXPECT_EQ(dag.groups[g].quadric_error, as_stored(built.dag.groups[g].quadric_error));
       EXPECT_EQ(dag.groups[g].first_cluster, built.dag.groups[g].first_cluster);
       if (tier == ErrorTier::kQem) {
-        EXPECT_EQ(dag.groups[g].error, built.dag.groups[g].error);
+        EXPECT_EQ(dag.groups[g].error, as_stored(built.dag.groups[g].error));
       }
     }
   }
@@ -74,9 +81,78 @@ TEST(Measure, SameForAnyThreadCount) {
   }
 }
 
+/// Vertices and triangles of each cluster in another order, triangles turned.
+void shuffle(std::size_t stride, SplitMix64& random, LodDag& dag) {
+  const auto shuffled = [&](std::uint32_t count) {
+    std::vector<std::uint32_t> order(count);
+    std::iota(order.begin(), order.end(), 0U);
+    for (std::uint32_t i = count; i > 1; --i) std::swap(order[i - 1], order[random.below(i)]);
+    return order;
+  };
+  const LodDag old = dag;
+  for (const DagCluster& cluster : old.clusters) {
+    const std::vector<std::uint32_t> to = shuffled(cluster.vertex_count), triangle = shuffled(cluster.triangle_count);
+    for (std::uint32_t v = 0; v < cluster.vertex_count; ++v) {
+      const std::size_t from = cluster.first_vertex + v, there = cluster.first_vertex + to[v];
+      dag.vertex_position[there] = old.vertex_position[from];
+      std::copy_n(&old.vertex_attributes[from * stride], stride, &dag.vertex_attributes[there * stride]);
+    }
+    for (std::uint32_t t = 0; t < cluster.triangle_count; ++t) {
+      const std::size_t turn = random.below(3);
+      for (std::size_t k = 0; k < 3; ++k) {
+        dag.triangles[cluster.first_triangle + triangle[t]][(k + turn) % 3] =
+            static_cast<std::uint8_t>(to[old.triangles[cluster.first_triangle + t][k]]);
+      }
+    }
+  }
+}
+
+TEST(Measure, SameForAnyOrderWithinClusters) {
+  SplitMix64 random(20261128);
+  // A scale so coarse that vertices of one place become equal.
+  for (const double normal_error : {0.1, 20.0}) {
+    for (const scene::Primitive& shape : {lab::make_rock(16), lab::make_loose_pieces(300)}) {
+      Built built = build(shape);
+      snap_attributes(built.mesh.layout, {.normal_error = normal_error}, built.dag);
+      for (const ErrorTier tier : {ErrorTier::kMeasured, ErrorTier::kCertified}) {
+        const LodDag first = measured(built, tier);
+        Built other = built;
+        shuffle(built.mesh.layout.stride(), random, other.dag);
+        const LodDag second = measured(other, tier);
+        ASSERT_EQ(first.groups.size(), second.groups.size());
+        for (std::size_t g = 0; g < first.groups.size(); ++g) {
+          EXPECT_EQ(first.groups[g].error, second.groups[g].error);
+          EXPECT_EQ(first.groups[g].deviation, second.groups[g].deviation);
+          EXPECT_EQ(first.groups[g].normal_deviation, second.groups[g].normal_deviation);
+          EXPECT_EQ(first.groups[g].uv_deviation, second.groups[g].uv_deviation);
+        }
+        EXPECT_EQ(second.triangles, other.dag.triangles);
+      }
+    }
+  }
+}
+
+/// A corner of one triangle elsewhere on the grid, one triangle less, another one twice.
+TEST(Measure, RefusesAnotherSource) {
+  const Built built = build(lab::make_rock(9));
+  const auto code_of = [&](const PreparedMesh& mesh) {
+    LodDag dag = built.dag;
+    const Status status = measure(mesh, ErrorTier::kMeasured, dag);
+    return status ? ErrorCode{} : status.error().code;
+  };
+  EXPECT_EQ(code_of(built.mesh), ErrorCode{});
+  PreparedMesh moved = built.mesh, fewer = built.mesh, twice = built.mesh;
+  moved.exact_on_grid.back().x += 1;
+  fewer.exact_triangles.pop_back();
+  twice.exact_triangles.back() = twice.exact_triangles.front();
+  EXPECT_EQ(code_of(moved), ErrorCode::kCheckFailed);
+  EXPECT_EQ(code_of(fewer), ErrorCode::kCheckFailed);
+  EXPECT_EQ(code_of(twice), ErrorCode::kCheckFailed);
+}
+
 TEST(Measure, AnEmptyDagAndAMeshOfOneClusterHaveNothingToMeasure) {
   LodDag empty;
-  measure(PreparedMesh(), ErrorTier::kMeasured, empty);
+  EXPECT_TRUE(measure(PreparedMesh(), ErrorTier::kMeasured, empty));
   EXPECT_TRUE(empty.groups.empty());
   const Built one = build(lab::make_plane(3));
   const LodDag dag = measured(one, ErrorTier::kMeasured);

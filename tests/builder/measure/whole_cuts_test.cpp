@@ -31,7 +31,7 @@ Built build(const scene::Primitive& shape) {
   EXPECT_TRUE(dag.ok());
   if (!dag.ok()) return built;
   built.dag = std::move(*dag);
-  measure(built.mesh, format::ErrorTier::kMeasured, built.dag);
+  EXPECT_TRUE(measure(built.mesh, format::ErrorTier::kMeasured, built.dag));
   return built;
 }
 

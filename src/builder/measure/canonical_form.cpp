@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "builder/measure/canonical_form.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstring>
+#include <numeric>
+#include <span>
+#include <string>
+
+#include "base/id_table.h"
+#include "base/ids.h"
+#include "base/parallel.h"
+
+namespace meshlode::builder {
+
+namespace {
+
+using Corners = std::array<std::uint32_t, 3>;
+
+std::uint64_t hash_of(const Vec3i& place) {
+  std::uint64_t h = 0;
+  for (int k = 0; k < 3; ++k) h = hash_word(h, static_cast<std::uint32_t>(place[k]));
+  return h;
+}
+
+/// How many places to the left a triangle is turned to be the least of its three turns.
+template <class Triangle>
+std::size_t least_turn(const Triangle& t) {
+  const auto turned = [&](std::size_t by) { return std::array{t[by], t[(by + 1) % 3], t[(by + 2) % 3]}; };
+  std::size_t best = 0;
+  for (std::size_t by = 1; by < 3; ++by) {
+    if (turned(by) < turned(best)) best = by;
+  }
+  return best;
+}
+
+/// The triangles of one cluster in the order of the places and attributes of their vertices.
+void order_cluster(const LodDag& dag, const DagCluster& cluster, std::size_t stride,
+                   std::vector<std::array<std::uint8_t, 3>>& triangles) {
+  const auto is_before = [&](std::uint32_t a, std::uint32_t b) {
+    const Vec3i &p = dag.vertex_position[a], &q = dag.vertex_position[b];
+    if (p.x != q.x) return p.x < q.x;
+    if (p.y != q.y) return p.y < q.y;
+    if (p.z != q.z) return p.z < q.z;
+    return stride > 0 && std::memcmp(&dag.vertex_attributes[a * stride], &dag.vertex_attributes[b * stride],
+                                     stride * sizeof(float)) < 0;
+  };
+  std::vector<std::uint32_t> order(cluster.vertex_count);
+  std::iota(order.begin(), order.end(), cluster.first_vertex);
+  std::sort(order.begin(), order.end(), is_before);
+  std::array<std::uint8_t, 256> rank{};  // of equal vertices, which quantization may leave, the same
+  std::size_t first = 0;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    if (is_before(order[first], order[i])) first = i;
+    rank[order[i] - cluster.first_vertex] = static_cast<std::uint8_t>(first);
+  }
+  std::array<std::uint32_t, 256> keys{};
+  for (std::uint32_t t = 0; t < cluster.triangle_count; ++t) {
+    const auto& local = dag.triangles[cluster.first_triangle + t];
+    const std::array ranks{rank[local[0]], rank[local[1]], rank[local[2]]};
+    const std::size_t turn = least_turn(ranks);
+    for (std::size_t k = 0; k < 3; ++k) keys[t] = keys[t] << 8U | ranks[(turn + k) % 3];
+  }
+  std::sort(keys.begin(), keys.begin() + cluster.triangle_count);
+  for (std::uint32_t t = 0; t < cluster.triangle_count; ++t) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t vertex = order[keys[t] >> (16U - 8U * k) & 0xFFU];
+      triangles[cluster.first_triangle + t][k] = static_cast<std::uint8_t>(vertex - cluster.first_vertex);
+    }
+  }
+}
+
+/// Ids of places on the grid: the source's first, then those of coarser levels, by their first use.
+class PositionIds {
+ public:
+  explicit PositionIds(std::size_t expected) : table_(expected) { places_.reserve(expected); }
+  std::uint32_t add(const Vec3i& place) {
+    const auto entry = table_.find_or_insert(
+        hash_of(place), static_cast<std::uint32_t>(places_.size()),
+        [&](std::uint32_t other) { return places_[other] == place; },
+        [&](std::uint32_t other) { return hash_of(places_[other]); });
+    if (entry.is_new) places_.push_back(place);
+    return entry.id;
+  }
+  [[nodiscard]] std::uint32_t size() const { return static_cast<std::uint32_t>(places_.size()); }
+
+ private:
+  IdTable table_;
+  std::vector<Vec3i> places_;
+};
+
+/// Triangles that are the least of their turns, in order; equal ones in the order of their ids.
+std::vector<std::uint32_t> sorted(std::span<const Corners> triangles, std::size_t position_count) {
+  std::vector<std::uint32_t> end(position_count + 1, 0), order(triangles.size());
+  for (const Corners& t : triangles) ++end[t[0] + 1];
+  std::partial_sum(end.begin(), end.end(), end.begin());
+  std::vector<std::uint32_t> next(end.begin(), end.end() - 1);
+  for (std::uint32_t t = 0; t < triangles.size(); ++t) order[next[triangles[t][0]]++] = t;
+  parallel_for_each_index(position_count, kLoopGrain, [&](std::size_t p) {
+    std::sort(order.begin() + end[p], order.begin() + end[p + 1], [&](std::uint32_t a, std::uint32_t b) {
+      return triangles[a] != triangles[b] ? triangles[a] < triangles[b] : a < b;
+    });
+  });
+  return order;
+}
+
+/// Triangles by places, the least of their turns, and by how much each was turned.
+struct Turned {
+  std::vector<Corners> triangles;
+  std::vector<std::uint8_t> turn;
+  void add(const Corners& t) {
+    const std::size_t by = least_turn(t);
+    triangles.push_back({t[by], t[(by + 1) % 3], t[(by + 2) % 3]});
+    turn.push_back(static_cast<std::uint8_t>(by));
+  }
+  void reserve(std::size_t count) {
+    triangles.reserve(count);
+    turn.reserve(count);
+  }
+};
+
+/// Fills position_of_vertex. Returns the ids of the source's exact positions, which are the first.
+std::vector<std::uint32_t> number_positions(const PreparedMesh& mesh, const LodDag& dag, CanonicalForm& form) {
+  PositionIds ids(mesh.exact_on_grid.size() + mesh.exact_on_grid.size() / 8);
+  std::vector<std::uint32_t> of_source(mesh.exact_on_grid.size());
+  std::transform(mesh.exact_on_grid.begin(), mesh.exact_on_grid.end(), of_source.begin(),
+                 [&](const Vec3i& place) { return ids.add(place); });
+  form.position_of_vertex.assign(dag.vertex_position.size(), kNoId);
+  const auto number = [&](std::uint32_t vertex) {
+    std::uint32_t& position = form.position_of_vertex[vertex];
+    if (position == kNoId) position = ids.add(dag.vertex_position[vertex]);
+  };
+  for (const DagCluster& cluster : dag.clusters) {
+    for (std::uint32_t t = cluster.first_triangle; t < cluster.first_triangle + cluster.triangle_count; ++t) {
+      for (const std::uint8_t local : form.triangles[t]) number(cluster.first_vertex + local);
+    }
+    // Of equal vertices all but one are in no triangle here.
+    for (std::uint32_t v = cluster.first_vertex; v < cluster.first_vertex + cluster.vertex_count; ++v) number(v);
+  }
+  form.position_count = ids.size();
+  return of_source;
+}
+
+/// Fills what is known per source triangle. `of_source`: of number_positions().
+Status match_level0(const PreparedMesh& mesh, const LodDag& dag, std::span<const std::uint32_t> of_source,
+                    CanonicalForm& form) {
+  const Error other{ErrorCode::kCheckFailed, {}, "level 0 is not made of the source's triangles (V101)"};
+  std::uint32_t source_positions = 0;
+  for (const std::uint32_t position : of_source) source_positions = std::max(source_positions, position + 1);
+  Turned source, level0;
+  source.reserve(mesh.exact_triangles.size());
+  level0.reserve(mesh.exact_triangles.size());
+  std::vector<CanonicalForm::Level0Triangle> places;
+  places.reserve(mesh.exact_triangles.size());
+  for (const auto& t : mesh.exact_triangles) source.add({of_source[t[0]], of_source[t[1]], of_source[t[2]]});
+  for (std::uint32_t c = 0; c < dag.clusters.size(); ++c) {
+    const DagCluster& cluster = dag.clusters[c];
+    if (cluster.own_group.is_valid()) continue;
+    for (std::uint32_t t = cluster.first_triangle; t < cluster.first_triangle + cluster.triangle_count; ++t) {
+      Corners corners{};
+      for (std::size_t k = 0; k < 3; ++k) {
+        corners[k] = form.position_of_vertex[cluster.first_vertex + form.triangles[t][k]];
+        if (corners[k] >= source_positions) return other;
+      }
+      level0.add(corners);
+      places.push_back({c, t});
+    }
+  }
+  if (level0.triangles.size() != source.triangles.size()) return other;
+
+  const std::vector<std::uint32_t> sources = sorted(source.triangles, source_positions);
+  const std::vector<std::uint32_t> stored = sorted(level0.triangles, source_positions);
+  form.level0_of_source.resize(sources.size());
+  form.vertices_of_source.swap(source.triangles);  // positions there become vertices
+  for (std::size_t i = 0; i < sources.size(); ++i) {
+    const std::uint32_t s = sources[i], l = stored[i];
+    WedgeTriangle& vertices = form.vertices_of_source[s];
+    if (vertices != level0.triangles[l]) return other;
+    const auto [cluster, triangle] = form.level0_of_source[s] = places[l];
+    for (std::size_t k = 0; k < 3; ++k) {  // corner by corner: both were turned to the same first place
+      vertices[(k + source.turn[s]) % 3] =
+          dag.clusters[cluster].first_vertex + form.triangles[triangle][(k + level0.turn[l]) % 3];
+    }
+  }
+  return Ok{};
+}
+
+}  // namespace
+
+Result<CanonicalForm> canonical_form(const PreparedMesh& mesh, const LodDag& dag) {
+  CanonicalForm form;
+  form.triangles.resize(dag.triangles.size());
+  parallel_for_each_index(dag.clusters.size(), 16, [&](std::size_t c) {
+    order_cluster(dag, dag.clusters[c], mesh.layout.stride(), form.triangles);
+  });
+  const std::vector<std::uint32_t> of_source = number_positions(mesh, dag, form);
+  if (const Status matched = match_level0(mesh, dag, of_source, form); !matched) return matched.error();
+  return form;
+}
+
+}  // namespace meshlode::builder
