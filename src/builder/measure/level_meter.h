@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Measures the groups of one level after another, fine to coarse, against what is there once they are replaced
+// (LevelSurface), both ways:
+//   1. ask_units, ask_vertices: the vertices of the source are asked for the surface, new vertices of the surface for
+//      the source,
+//   2. check_units: source triangles that pass from one triangle of the surface to another are laid over it (Overlay),
+//   3. check_made: so are triangles of the surface over the source, where it is not parallel, ends, or is not seen,
+//   4. wait_for_others: what a group stood for and is now near to another's part is held to cuts without that part.
+// Whatever is farther than what is known of a group so far is its new known distance; what is nearer is dismissed as
+// early as a bound allows.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <tuple>
+#include <vector>
+
+#include "builder/deviation/source_tree.h"
+#include "builder/lod_dag.h"
+#include "builder/measure/level_surface.h"
+#include "builder/measure/overlay.h"
+#include "builder/measure/source_units.h"
+#include "builder/prepared.h"
+
+namespace meshlode::builder {
+
+class LevelMeter {
+ public:
+  /// `level0_cluster`: what became of each source triangle. What it is given must outlive it, but for that.
+  LevelMeter(const PreparedMesh& mesh, std::span<const std::uint32_t> level0_cluster, double margin, LodDag& dag);
+
+  /// All groups of a level; finer ones are measured.
+  void measure_level(std::uint32_t first_group, std::uint32_t end_group);
+
+ private:
+  /// Of a group, while its level is measured. Object units.
+  struct Known {
+    double floor = 0.0;  ///< its error is no less
+    double found = 0.0;  ///< the largest distance
+    double known = 0.0;  ///< no smaller one matters
+  };
+  struct Raise {
+    std::uint32_t group;
+    double distance;
+  };
+  /// A unit of the source, and the groups of the level that stand for it.
+  struct OwnedUnit {
+    std::uint32_t unit = 0;
+    std::uint32_t first_owner = 0, owner_count = 0;  ///< into owners_
+  };
+  /// What a vertex of a unit is near to.
+  struct NearVertex {
+    std::uint32_t triangle;  ///< of the surface
+    float distance;
+  };
+  /// A vertex or a triangle of the source that a group stood for, and that is now near to what another one made.
+  struct Moved {
+    std::uint32_t group, to;
+    std::uint32_t id;
+    bool is_triangle;
+    double distance = 0.0;  ///< from what is there where the other group is not replaced
+    [[nodiscard]] bool operator<(const Moved& other) const {
+      return std::tie(group, is_triangle, id, to) < std::tie(other.group, other.is_triangle, other.id, other.to);
+    }
+  };
+  /// Units of one group that one turn looks after.
+  struct UnitChunk {
+    std::uint32_t group = 0;
+    std::span<const OwnedUnit> units;
+    std::vector<std::uint32_t> first_near;  ///< per unit: into near; kNoId: all of it is near to one triangle
+    std::vector<std::uint32_t> near_all;    ///< per unit: to this one
+    std::vector<NearVertex> near;
+    std::vector<Raise> raised;
+    std::vector<Moved> moved;
+  };
+  /// A cluster that a group made.
+  struct Made {
+    std::uint32_t group = 0, cluster = 0;
+    std::uint32_t first_triangle = 0, triangle_count = 0;  ///< of the surface
+    std::vector<TreeSlot> near;                            ///< per triangle: of the source
+    std::vector<Raise> raised;
+  };
+  class Owners;
+
+  // level_meter.cpp
+  void list_vertices();
+  void begin_level(std::uint32_t first_group, std::uint32_t end_group);
+  [[nodiscard]] std::vector<UnitChunk> chunk_units() const;
+  [[nodiscard]] std::vector<Made> made_clusters(const LevelSurface& surface) const;
+  template <class Item>
+  void merge(std::vector<Item>& items);
+  void finish_groups(std::span<const Made> made);
+  void measure_attributes_of(std::uint32_t group, std::span<const TreeSlot> near);
+  void hand_on(const LevelSurface& surface, std::span<const UnitChunk> chunks);
+
+  // over_surface.cpp: the source against the surface
+  void ask_units(const LevelSurface& surface, UnitChunk& chunk) const;
+  void check_units(const LevelSurface& surface, UnitChunk& chunk, std::size_t extra_parts);
+  void mark_seen(const LevelSurface& surface, std::uint32_t triangle, std::uint32_t source_triangle, bool is_border);
+  [[nodiscard]] bool is_flat(const LevelSurface& surface, const SourceUnits::Triangle& triangle,
+                             const std::array<std::uint32_t, 3>& near, double within) const;
+
+  // over_source.cpp: the surface against the source
+  void ask_vertices(Made& made) const;
+  void check_made(const LevelSurface& surface, Made& made, std::size_t extra_parts) const;
+  [[nodiscard]] bool is_plain(const LevelSurface& surface, std::uint32_t triangle, TreeSlot near) const;
+
+  // moved.cpp
+  void list_moved(const LevelSurface& surface, const OwnedUnit& unit, const NearVertex* near, std::uint32_t near_all,
+                  UnitChunk& chunk) const;
+  void measure_moved(const LevelSurface& surface, std::span<Moved> moved) const;
+  void wait_for_others(const LevelSurface& surface, std::span<const UnitChunk> chunks);
+
+  [[nodiscard]] bool is_of_level(std::uint32_t group) const { return group >= first_ && group < end_; }
+  [[nodiscard]] Known& known(std::uint32_t group) { return known_[group - first_]; }
+  [[nodiscard]] const Known& known(std::uint32_t group) const { return known_[group - first_]; }
+  /// The group that made a triangle of the surface; invalid for level 0.
+  [[nodiscard]] GroupId maker(const LevelSurface& surface, std::uint32_t triangle) const {
+    return dag_.clusters[surface.cluster[triangle]].own_group;
+  }
+
+  const PreparedMesh& mesh_;
+  double margin_;
+  LodDag& dag_;
+  SourceTree source_;
+  SourceUnits units_;
+  std::vector<LinkedSurface::Triangle> source_neighbor_;
+  std::vector<std::uint32_t> wedge_of_exact_;
+  std::vector<std::vector<std::uint32_t>> outputs_;   ///< per group: the clusters that it made
+  std::vector<std::uint32_t> vertex_of_;              ///< per vertex of the DAG: the first in the same place
+  std::vector<std::uint8_t> is_new_;                  ///< per vertex of the DAG: no finer cluster has it
+  std::vector<std::uint32_t> owner_;                  ///< per vertex of a unit: the cluster that stands for it
+  std::vector<std::vector<std::uint32_t>> units_of_;  ///< per cluster: the units with a vertex that it stands for
+
+  std::uint32_t first_ = 0, end_ = 0;          ///< the level's groups
+  std::vector<Known> known_;                   ///< per group of the level
+  std::vector<std::vector<OwnedUnit>> owned_;  ///< likewise; a unit of several groups is the first one's
+  std::vector<std::uint32_t> owners_;
+  std::vector<std::atomic<std::uint8_t>> seen_;  ///< per triangle of the surface: flags
+};
+
+/// Groups that a point of a unit may belong to, and what is known of them.
+class LevelMeter::Owners {
+ public:
+  Owners(const LevelMeter& meter, const OwnedUnit& unit)
+      : meter_(meter), groups_(std::span(meter.owners_).subspan(unit.first_owner, unit.owner_count)) {}
+
+  [[nodiscard]] bool is_one() const { return groups_.size() == 1; }
+  /// What all of them are known to be off by. `of_one`: of the one there is, as its turn knows it.
+  [[nodiscard]] double known(double of_one) const {
+    if (is_one()) return of_one;
+    double least = meter_.known(groups_.front()).known;
+    for (const std::uint32_t g : groups_) least = std::min(least, meter_.known(g).known);
+    return least;
+  }
+  /// A point is farther than that: which of them made what is nearest to it answers, else all.
+  void raise(const LevelSurface& surface, double distance, std::uint32_t nearest, std::vector<Raise>& raised) const {
+    const GroupId made = meter_.maker(surface, nearest);
+    if (made.is_valid() && std::find(groups_.begin(), groups_.end(), made.value) != groups_.end()) {
+      raised.push_back({made.value, distance});
+      return;
+    }
+    for (const std::uint32_t g : groups_) raised.push_back({g, distance});
+  }
+
+ private:
+  const LevelMeter& meter_;
+  std::span<const std::uint32_t> groups_;
+};
+
+/// What a triangle of the surface is known to have over it: source that is about parallel, and source that is not, or
+/// ends there.
+constexpr std::uint8_t kSeen = 1, kOpen = 2;
+/// Within this cosine two surfaces are about parallel. 0.9 misses folds of the dragon (group 668).
+constexpr float kParallel = 0.95F;
+/// Searches go on to what is farther by this at least.
+constexpr double kTolerance = 1.002;
+/// Parts that searches may make: for each triangle that needs one, and spread over all of a level. The dragon's errors
+/// are the same with four times as many.
+constexpr std::size_t kPartsPerTriangle = 16, kPartsOfLevel = 4000;
+/// A source of at most so many triangles costs little, and is looked at without shortcuts.
+constexpr std::size_t kFewSource = 30000;
+
+/// A triangle within `enough` of the point, or the nearest. The search begins at `hint`, if there is one.
+[[nodiscard]] inline SurfaceTree::Hit find_near(const SurfaceTree& tree, const Vec3d& point, TreeSlot hint,
+                                                double enough) {
+  const Vec3f at = tree.to_frame(point);
+  const float enough2 = tree.squared_in_frame(enough);
+  SurfaceTree::Hit hit;
+  if (hint.is_valid()) hit = tree.look_around(at, hint, hit);
+  return hit.distance2 <= enough2 ? hit : tree.find_nearest(at, hit, enough2);
+}
+[[nodiscard]] inline double distance_at(const SurfaceTree& tree, const Vec3d& point, TreeSlot slot) {
+  return slot.is_valid() ? std::sqrt(tree.distance2_at(point, slot)) : 0.0;
+}
+
+}  // namespace meshlode::builder

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "builder/measure/measure_levels.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "builder/measure/level_meter.h"
+
+namespace meshlode::builder {
+
+void measure_levels(const PreparedMesh& mesh, std::span<const std::uint32_t> level0_cluster, double margin,
+                    LodDag& dag) {
+  LevelMeter meter(mesh, level0_cluster, margin, dag);
+  for (std::size_t end = dag.groups.size(); end > 0;) {
+    std::size_t begin = end - 1;
+    while (begin > 0 && dag.groups[begin - 1].level == dag.groups[begin].level) --begin;
+    meter.measure_level(static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end));
+    end = begin;
+  }
+}
+
+}  // namespace meshlode::builder

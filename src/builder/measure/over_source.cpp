@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the groups of a level made against the source.
+#include "builder/deviation/bounded_search.h"
+#include "builder/measure/level_meter.h"
+
+namespace meshlode::builder {
+
+namespace {
+
+/// A triangle is looked at closely where a few of its points are so far, as a share of what is known.
+constexpr double kPromise = 0.6;
+/// One that lies over more source triangles is left to a search in bounds.
+constexpr std::size_t kMostPieces = 64;
+
+}  // namespace
+
+void LevelMeter::ask_vertices(Made& made) const {
+  const SurfaceTree& source = source_.impl().tree;
+  const DagCluster& cluster = dag_.clusters[made.cluster];
+  double within = known(made.group).known;
+  std::vector<TreeSlot> near(cluster.vertex_count);
+  TreeSlot place;
+  for (std::uint32_t v = 0; v < cluster.vertex_count; ++v) {
+    if (is_new_[cluster.first_vertex + v] != 0 || !place.is_valid()) {
+      const Vec3d at = mesh_.grid.decode(dag_.vertex_position[cluster.first_vertex + v]);
+      const SurfaceTree::Hit hit = find_near(source, at, place, within);
+      if (hit.slot.is_valid()) place = hit.slot;
+      if (hit.distance2 > 0.98F * source.squared_in_frame(within)) {  // as floats say
+        const double distance = distance_at(source, at, place);
+        if (distance > within) made.raised.push_back({made.group, distance});
+        within = std::max(within, distance);
+      }
+    }
+    near[v] = place;
+  }
+  made.near.resize(cluster.triangle_count);
+  for (std::uint32_t t = 0; t < cluster.triangle_count; ++t) {
+    made.near[t] = near[dag_.triangles[cluster.first_triangle + t][0]];
+  }
+}
+
+/// The source near to a triangle of the surface is parallel to it and ends nowhere near.
+bool LevelMeter::is_plain(const LevelSurface& surface, std::uint32_t triangle, TreeSlot near) const {
+  const std::uint32_t t = source_.impl().tree.triangle_at(near);
+  if (glm::dot(units_.normals()[t], surface.normal[triangle]) < kParallel) return false;
+  const std::array<std::uint32_t, 3> corner = source_.impl().vertices(t);
+  return std::none_of(corner.begin(), corner.end(), [&](std::uint32_t v) { return units_.is_border(v); });
+}
+
+void LevelMeter::check_made(const LevelSurface& surface, Made& made, std::size_t extra_parts) const {
+  const SourceTree::Impl& impl = source_.impl();
+  const SurfaceTree& source = impl.tree;
+  const bool is_small = source.size() <= kFewSource;
+  double within = known(made.group).known;
+  const auto raise = [&](double distance) {
+    if (distance <= within) return;
+    made.raised.push_back({made.group, distance});
+    within = distance;
+  };
+  BoundedSearch search(source, kTolerance, within);
+  std::size_t searched = 0;
+  const LinkedSurface linked{impl.positions, impl.triangles, source_neighbor_, units_.normals(), source, impl.place};
+  Overlay overlay(linked, kMostPieces);
+  for (std::uint32_t i = 0; i < made.triangle_count; ++i) {
+    const std::uint32_t k = made.first_triangle + i;
+    if (!made.near[i].is_valid()) continue;
+    const std::uint8_t seen = seen_[k].load(std::memory_order_relaxed);
+    if (!is_small && (seen == kSeen || (seen == 0 && is_plain(surface, k, made.near[i])))) continue;
+    const auto [a, b, c] = surface.corners(k);
+    if (!is_small) {
+      double most = 0.0;
+      TreeSlot place = made.near[i];
+      for (const Vec3d& x : {(a + b + c) / 3.0, 0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a)}) {
+        place = find_near(source, x, place, kPromise * within).slot;
+        most = std::max(most, distance_at(source, x, place));
+      }
+      raise(most);
+      if (most <= kPromise * within) continue;
+    }
+    if (overlay.is_within({a, b, c}, source.triangle_at(made.near[i]), within)) continue;
+    for (const Overlay::Far& far : overlay.far()) raise(far.distance);
+    if (overlay.rest().empty()) continue;
+    ++searched;
+    for (const Overlay::Rest& rest : overlay.rest()) search.add(rest.corners, impl.place_of(rest.near));
+  }
+  (void)search.run(kPartsPerTriangle * searched + extra_parts);
+  raise(search.found().distance);
+}
+
+}  // namespace meshlode::builder

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "builder/measure/overlay.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace meshlode::builder {
+
+bool Overlay::is_within(const TriangleCorners& corners, std::uint32_t start, double known) {
+  known_ = known;
+  below_.clear();
+  far_.clear();
+  rest_.clear();
+  size_ = 0;
+  Piece& all = push();
+  std::copy(corners.begin(), corners.end(), all.polygon.corner.begin());
+  all.polygon.count = 3;
+  all.triangle = start;
+  all.entered = 3;
+  for (std::size_t pieces = 0; size_ > 0; ++pieces) {
+    if (pieces == most_pieces_) {
+      rest_.assign(1, {corners, start});
+      break;
+    }
+    const std::size_t top = size_ - 1;
+    cut(top);
+    check(stack_[top]);
+    // What was cut off lies above it.
+    if (size_ > top + 1) stack_[top] = stack_[size_ - 1];
+    --size_;
+  }
+  return far_.empty() && rest_.empty();
+}
+
+Overlay::Piece& Overlay::push() {
+  if (size_ == stack_.size()) stack_.resize(size_ + 16);
+  return stack_[size_++];
+}
+
+/// Keeps what lies over the piece's triangle; what lies beyond its edges goes onto the stack.
+void Overlay::cut(std::size_t index) {
+  const std::uint32_t k = stack_[index].triangle, entered = stack_[index].entered;
+  const TriangleCorners corners = surface_.corners(k);
+  const Vec3d normal(surface_.normal[k]);
+  for (std::uint32_t e = 0; e < 3; ++e) {
+    const std::uint32_t next = surface_.neighbor[k][e];
+    if (next == kNoId || e == entered) continue;
+    const std::uint32_t other = next / 4;
+    const Vec3d& from = corners[e];
+    const Vec3d edge = corners[(e + 1) % 3] - from;
+    const Vec3d& inner = corners[(e + 2) % 3];
+    // Halfway between the two triangles: through the edge and along the mean of the normals, whichever way it winds.
+    const Vec3d its_inner = surface_.positions[surface_.triangles[other][(next % 4 + 2) % 3]] - from;
+    const Vec3d its_normal(surface_.normal[other]);
+    const bool is_turned = glm::dot(its_normal, glm::cross(its_inner, edge)) < 0.0;
+    const Vec3d outward = glm::cross(edge, is_turned ? normal - its_normal : normal + its_normal);
+    if (!(glm::dot(outward, inner - from) < 0.0)) continue;  // a needle, or folded back: it stays
+    Polygon& p = stack_[index].polygon;
+    std::array<double, kMostCorners> height;
+    bool is_out = false, is_in = false;
+    for (std::uint32_t i = 0; i < p.count; ++i) {
+      height[i] = glm::dot(outward, p.corner[i] - from);
+      is_out = is_out || height[i] > 0.0;
+      is_in = is_in || height[i] < 0.0;
+    }
+    std::uint32_t crossings = 0;
+    for (std::uint32_t i = 0; i < p.count; ++i)
+      crossings += (height[i] > 0.0) != (height[i + 1 == p.count ? 0 : i + 1] > 0.0) ? 1 : 0;
+    // Rounding can make a sliver cross more than twice: it stays whole, as does what has no room for corners.
+    if (!is_out || crossings > 2 || p.count + 2 > kMostCorners) continue;
+    Piece& beyond = push();
+    beyond.triangle = other;
+    beyond.entered = next % 4;
+    Polygon& whole = stack_[index].polygon;
+    if (!is_in) {
+      beyond.polygon = whole;
+      whole.count = 0;
+      return;
+    }
+    Polygon inside;
+    inside.count = beyond.polygon.count = 0;
+    const auto add = [](Polygon& to, const Vec3d& at) { to.corner[to.count++] = at; };
+    for (std::uint32_t i = 0; i < whole.count; ++i) {
+      const std::uint32_t j = i + 1 == whole.count ? 0 : i + 1;
+      if (height[i] <= 0.0) add(inside, whole.corner[i]);
+      if (height[i] >= 0.0) add(beyond.polygon, whole.corner[i]);
+      if ((height[i] > 0.0 && height[j] < 0.0) || (height[i] < 0.0 && height[j] > 0.0)) {
+        const Vec3d x = whole.corner[i] + (whole.corner[j] - whole.corner[i]) * (height[i] / (height[i] - height[j]));
+        add(inside, x);
+        add(beyond.polygon, x);
+      }
+    }
+    whole.count = inside.count;
+    std::copy_n(inside.corner.begin(), inside.count, whole.corner.begin());
+  }
+}
+
+/// By its corners all of a piece is near to the triangle below; or another one is nearer, or it is far.
+void Overlay::check(const Piece& piece) {
+  if (piece.polygon.count == 0) return;
+  below_.push_back(piece.triangle);
+  const TriangleDistance below(surface_.corners(piece.triangle));
+  bool is_within = true;
+  for (std::uint32_t i = 0; i < piece.polygon.count; ++i) {
+    const Vec3d& x = piece.polygon.corner[i];
+    if (below.squared_to(x) <= known_ * known_) continue;
+    is_within = false;
+    const SurfaceTree& tree = surface_.tree;
+    const Vec3f at = tree.to_frame(x);
+    const float enough = tree.squared_in_frame(known_);
+    SurfaceTree::Hit hit = tree.look_around(at, surface_.slot[piece.triangle], {});
+    if (!(hit.distance2 <= enough)) hit = tree.find_nearest(at, hit, enough);
+    const double distance = std::sqrt(tree.distance2_at(x, hit.slot));
+    far_.push_back({x, piece.triangle, tree.triangle_at(hit.slot), distance});
+    known_ = std::max(known_, distance);
+  }
+  if (!is_within) leave(piece);
+}
+
+void Overlay::leave(const Piece& piece) {
+  const Polygon& p = piece.polygon;
+  for (std::uint32_t i = 1; i + 1 < p.count; ++i) {
+    rest_.push_back({{p.corner[0], p.corner[i], p.corner[i + 1]}, piece.triangle});
+  }
+}
+
+}  // namespace meshlode::builder

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A triangle laid over a surface: cut where it passes from one triangle of the surface to the next, halfway between
+// the two. The distance to one triangle is convex, so that a piece is nowhere farther from the triangle that it lies
+// over than its corners are: these are the corners of the overlay of both, and the largest distance is at one of them.
+// What a piece lies over need not be what is nearest to it. Then the bound is too large, never too small.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "base/id_table.h"
+#include "base/ids.h"
+#include "base/unset_vector.h"
+#include "builder/deviation/point_distance.h"
+#include "builder/deviation/surface_tree.h"
+
+namespace meshlode::builder {
+
+/// A surface that another one is laid over.
+struct LinkedSurface {
+  using Triangle = std::array<std::uint32_t, 3>;
+  std::span<const Vec3d> positions;
+  std::span<const Triangle> triangles;
+  /// Per triangle and edge, from that corner to the next: 4 times the triangle beyond and the edge's number there;
+  /// kNoId: a border, or more than two meet.
+  std::span<const Triangle> neighbor;
+  std::span<const Vec3f> normal;  ///< per triangle, of unit length or 0
+  const SurfaceTree& tree;
+  std::span<const TreeSlot> slot;  ///< per triangle
+
+  [[nodiscard]] TriangleCorners corners(std::uint32_t triangle) const {
+    const Triangle& t = triangles[triangle];
+    return {positions[t[0]], positions[t[1]], positions[t[2]]};
+  }
+};
+
+/// LinkedSurface::neighbor. `id(corner)`: equal where two corners are in one place.
+template <class Id>
+[[nodiscard]] std::vector<LinkedSurface::Triangle> link_edges(std::span<const LinkedSurface::Triangle> triangles,
+                                                              const Id& id) {
+  std::vector<LinkedSurface::Triangle> neighbor(triangles.size(), {kNoId, kNoId, kNoId});
+  const auto ends = [&](std::uint32_t edge) {
+    const LinkedSurface::Triangle& t = triangles[edge / 4];
+    const std::uint32_t a = id(t[edge % 4]), b = id(t[(edge % 4 + 1) % 3]);
+    return std::uint64_t{std::min(a, b)} << 32U | std::max(a, b);
+  };
+  const auto hash = [&](std::uint32_t edge) { return hash_word(0, ends(edge)); };
+  IdTable table(triangles.size() * 3 / 2);
+  std::vector<std::uint32_t> crowded;
+  for (std::uint32_t k = 0; k < triangles.size(); ++k) {
+    for (std::uint32_t e = 0; e < 3; ++e) {
+      const std::uint32_t edge = 4 * k + e;
+      const std::uint64_t key = ends(edge);
+      const auto entry = table.find_or_insert(
+          hash_word(0, key), edge, [&](std::uint32_t other) { return ends(other) == key; }, hash);
+      if (entry.is_new) continue;
+      std::uint32_t& back = neighbor[entry.id / 4][entry.id % 4];
+      if (back != kNoId) {
+        crowded.push_back(entry.id);
+        continue;
+      }
+      back = edge;
+      neighbor[k][e] = entry.id;
+    }
+  }
+  for (const std::uint32_t edge : crowded) {
+    std::uint32_t& there = neighbor[edge / 4][edge % 4];
+    if (there != kNoId) neighbor[there / 4][there % 4] = kNoId;
+    there = kNoId;
+  }
+  return neighbor;
+}
+
+class Overlay {
+ public:
+  /// Of a piece a corner that is farther than what is known from the triangle below.
+  struct Far {
+    Vec3d at{0.0};
+    std::uint32_t below = 0;    ///< triangle of the surface
+    std::uint32_t nearest = 0;  ///< likewise: near to it
+    double distance = 0.0;      ///< from the surface
+  };
+
+  Overlay(const LinkedSurface& surface, std::size_t most_pieces) : surface_(surface), most_pieces_(most_pieces) {}
+
+  /// Whether all of a triangle is within `known`. Else far() has corners that are beyond, and rest() what is open.
+  /// `start`: a triangle of the surface that is near to the first corner.
+  [[nodiscard]] bool is_within(const TriangleCorners& corners, std::uint32_t start, double known);
+
+  [[nodiscard]] std::span<const Far> far() const { return far_; }
+  /// The triangles of the surface that parts of it lie over.
+  [[nodiscard]] std::span<const std::uint32_t> below() const { return below_; }
+  struct Rest {
+    TriangleCorners corners;
+    std::uint32_t near = 0;
+  };
+  [[nodiscard]] std::span<const Rest> rest() const { return rest_; }
+
+ private:
+  static constexpr std::uint32_t kMostCorners = 10;
+  struct Polygon {
+    std::array<Vec3d, kMostCorners> corner;
+    std::uint32_t count;
+  };
+  struct Piece {
+    Polygon polygon;
+    std::uint32_t triangle;
+    std::uint32_t entered;  ///< over that edge; 3: over none
+  };
+
+  void cut(std::size_t piece);
+  Piece& push();
+  void check(const Piece& piece);
+  void leave(const Piece& piece);
+
+  const LinkedSurface& surface_;
+  std::size_t most_pieces_;
+  double known_ = 0.0;
+  UnsetVector<Piece> stack_;  ///< as many as there ever were
+  std::size_t size_ = 0;
+  std::vector<std::uint32_t> below_;
+  std::vector<Far> far_;
+  std::vector<Rest> rest_;
+};
+
+}  // namespace meshlode::builder

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "builder/measure/source_units.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "base/parallel.h"
+#include "builder/measure/level_surface.h"
+
+namespace meshlode::builder {
+
+namespace {
+
+/// A larger unit is dismissed later, a smaller one asks for more of its vertices twice.
+constexpr std::size_t kUnit = 24;
+
+/// Halves a cluster's triangles by the median along the longest side until they are units; calls add(unit).
+template <class Add>
+void halve(std::span<std::uint32_t> triangles, const SourceTree::Impl& source, const Add& add) {
+  if (triangles.size() <= kUnit) return add(triangles);
+  Vec3d low(std::numeric_limits<double>::infinity()), high(-low);
+  const auto center = [&](std::uint32_t t) {
+    const auto [a, b, c] = source.corners(t);
+    return a + b + c;
+  };
+  for (const std::uint32_t t : triangles) {
+    const Vec3d at = center(t);
+    low = glm::min(low, at);
+    high = glm::max(high, at);
+  }
+  const Vec3d size = high - low;
+  const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+  const std::size_t half = triangles.size() / 2;
+  std::nth_element(triangles.begin(), triangles.begin() + static_cast<std::ptrdiff_t>(half), triangles.end(),
+                   [&](std::uint32_t x, std::uint32_t y) {
+                     const double p = center(x)[axis], q = center(y)[axis];
+                     return p != q ? p < q : x < y;
+                   });
+  halve(triangles.first(half), source, add);
+  halve(triangles.subspan(half), source, add);
+}
+
+}  // namespace
+
+SourceUnits::SourceUnits(const SourceTree::Impl& source, std::span<const std::uint32_t> cluster_of,
+                         std::size_t cluster_count) {
+  std::vector<std::uint32_t> first(cluster_count + 1, 0);
+  for (const std::uint32_t c : cluster_of) ++first[c + 1];
+  std::partial_sum(first.begin(), first.end(), first.begin());
+  std::vector<std::uint32_t> sorted(cluster_of.size()), next(first.begin(), first.end() - 1);
+  for (std::uint32_t t = 0; t < cluster_of.size(); ++t) sorted[next[cluster_of[t]]++] = t;
+  triangles_.reserve(cluster_of.size());
+  vertices_.reserve(cluster_of.size());
+  first_unit_.assign(cluster_count + 1, 0);
+  for (std::size_t c = 0; c < cluster_count; ++c) {
+    first_unit_[c] = static_cast<std::uint32_t>(units_.size());
+    if (first[c] == first[c + 1]) continue;
+    halve(std::span(sorted).subspan(first[c], first[c + 1] - first[c]), source, [&](std::span<std::uint32_t> unit) {
+      std::sort(unit.begin(), unit.end());
+      add_unit(source, unit);
+    });
+  }
+  first_unit_[cluster_count] = static_cast<std::uint32_t>(units_.size());
+  find_borders(source);
+  normals_.resize(cluster_of.size());
+  parallel_for_each_index(normals_.size(), kLoopGrain, [&](std::size_t t) {
+    normals_[t] = unit_normal(source.corners(static_cast<std::uint32_t>(t)));
+  });
+}
+
+void SourceUnits::add_unit(const SourceTree::Impl& source, std::span<const std::uint32_t> triangles) {
+  Unit unit;
+  unit.first_vertex = static_cast<std::uint32_t>(vertices_.size());
+  unit.first_triangle = static_cast<std::uint32_t>(triangles_.size());
+  Vec3d low(std::numeric_limits<double>::infinity()), high(-low);
+  for (const std::uint32_t t : triangles) {
+    Triangle triangle;
+    triangle.id = t;
+    const std::array<std::uint32_t, 3> ids = source.vertices(t);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto begin = vertices_.begin() + unit.first_vertex;
+      const auto at = std::find(begin, vertices_.end(), ids[k]);
+      triangle.corner[k] = static_cast<std::uint8_t>(at - begin);
+      if (at == vertices_.end()) vertices_.push_back(ids[k]);
+      low = glm::min(low, source.positions[ids[k]]);
+      high = glm::max(high, source.positions[ids[k]]);
+    }
+    const auto [a, b, c] = source.corners(t);
+    const double longest2 = std::max(glm::dot(b - a, b - a), std::max(glm::dot(c - b, c - b), glm::dot(a - c, a - c)));
+    triangle.longest = static_cast<float>(std::sqrt(longest2) * (1.0 + 1e-6));
+    triangles_.push_back(triangle);
+  }
+  unit.vertex_count = static_cast<std::uint32_t>(vertices_.size()) - unit.first_vertex;
+  unit.triangle_count = static_cast<std::uint32_t>(triangles.size());
+  unit.center = low + 0.5 * (high - low);
+  double radius2 = 0.0;
+  for (const std::uint32_t v : vertices(unit)) {
+    const Vec3d away = source.positions[v] - unit.center;
+    radius2 = std::max(radius2, glm::dot(away, away));
+  }
+  unit.radius = std::sqrt(radius2) * (1.0 + 1e-9);
+  units_.push_back(unit);
+}
+
+void SourceUnits::find_borders(const SourceTree::Impl& source) {
+  is_border_.resize(source.first_corner.size() - 1);
+  parallel_for_each_index(is_border_.size(), kLoopGrain, [&](std::size_t v) {
+    std::uint32_t balance = 0;  // of a closed fan the next corners are the previous ones
+    const auto around = source.triangles_around(static_cast<std::uint32_t>(v));
+    for (const std::uint32_t t : around) {
+      const auto c = source.vertices(t);
+      const std::size_t k = c[0] == v ? 0 : c[1] == v ? 1 : 2;
+      balance += c[(k + 1) % 3] * 2654435761U - c[(k + 2) % 3] * 2654435761U;
+    }
+    is_border_[v] = balance != 0 || around.size() < 3 ? 1 : 0;
+  });
+}
+
+}  // namespace meshlode::builder
