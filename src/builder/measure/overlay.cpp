@@ -111,7 +111,7 @@ void Overlay::check(const Piece& piece) {
     SurfaceTree::Hit hit = tree.look_around(at, surface_.slot[piece.triangle], {});
     if (!(hit.distance2 <= enough)) hit = tree.find_nearest(at, hit, enough);
     const double distance = std::sqrt(tree.distance2_at(x, hit.slot));
-    far_.push_back({x, piece.triangle, tree.triangle_at(hit.slot), distance});
+    far_.push_back({x, piece.triangle, tree.triangle_at(hit.slot), distance > known_ ? distance : 0.0});
     known_ = std::max(known_, distance);
   }
   if (!is_within) leave(piece);

@@ -82,7 +82,7 @@ class Overlay {
     Vec3d at{0.0};
     std::uint32_t below = 0;    ///< triangle of the surface
     std::uint32_t nearest = 0;  ///< likewise: near to it
-    double distance = 0.0;      ///< from the surface
+    double distance = 0.0;      ///< from the surface, where it is farther than all before; else 0
   };
 
   Overlay(const LinkedSurface& surface, std::size_t most_pieces) : surface_(surface), most_pieces_(most_pieces) {}

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Small DAGs where what is farthest off is known.
+#include <gtest/gtest.h>
+
+#include "builder/measure/measure_levels.h"
+#include "hand_made.h"
+
+namespace meshlode::builder {
+namespace {
+
+using test::HandMade;
+using test::Soup;
+
+/// A strip of unit width along x.
+Soup strip(double from, double to, double height) {
+  const Vec3d a(from, 0.0, height), b(to, 0.0, height), c(to, 1.0, height), d(from, 1.0, height);
+  return {{a, b, c}, {a, c, d}};
+}
+Soup operator+(Soup a, const Soup& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+/// One group: `before` becomes `after`.
+HandMade one_group(const Soup& before, const Soup& after) {
+  HandMade made;
+  made.add_group(1, true);
+  made.add_cluster(1, GroupId(1U), after);
+  made.add_group(0, false);
+  made.add_cluster(0, GroupId(), before);
+  return made;
+}
+double error_of(HandMade made) {
+  measure_levels(made.mesh, made.level0_cluster, 1.0, made.dag);
+  return made.dag.groups[1].error;
+}
+
+TEST(MeasureLevels, HeightsAreMeasuredBothWays) {
+  EXPECT_NEAR(error_of(one_group(strip(0, 2, 0), strip(0, 2, 0.125))), 0.125, 1e-9);
+  EXPECT_NEAR(error_of(one_group(strip(0, 2, 0), strip(0, 1.5, 0))), 0.5, 1e-9);  // of the source some is gone
+  EXPECT_NEAR(error_of(one_group(strip(0, 1.5, 0), strip(0, 2, 0))), 0.5, 1e-9);  // and here some came
+}
+
+TEST(MeasureLevels, APeakInsideATriangleOfTheSourceIsFound) {
+  // All corners of the source stay; a valley opens between them.
+  const Vec3d a(0.0), b(2.0, 0.0, 0.0), c(2.0, 1.0, 0.0), d(0.0, 1.0, 0.0), low(1.0, 0.5, -0.5);
+  EXPECT_NEAR(error_of(one_group(strip(0, 2, 0), {{a, b, low}, {b, c, low}, {c, d, low}, {d, a, low}})), 0.5, 1e-3);
+}
+
+TEST(MeasureLevels, AFoldIsMeasuredWhereTheSourceIsNot) {
+  // A sheet that goes to and back over the strip: its turn is as far as it is high.
+  const Soup fold = strip(0, 2, 0) + Soup{{Vec3d(0.5, 0.0, 0.0), Vec3d(1.5, 0.0, 0.75), Vec3d(0.5, 1.0, 0.0)}};
+  EXPECT_NEAR(error_of(one_group(strip(0, 2, 0), fold)), 0.75, 1e-9);
+}
+
+TEST(MeasureLevels, ALoosePieceThatWentIsAsFarAsItIsFromTheRest) {
+  const Soup piece{{Vec3d(0.5, 0.5, 1.0), Vec3d(0.75, 0.5, 1.0), Vec3d(0.5, 0.75, 1.25)}};
+  EXPECT_NEAR(error_of(one_group(strip(0, 2, 0) + piece, strip(0, 2, 0))), 1.25, 1e-9);
+}
+
+TEST(MeasureLevels, ANeedleThatWentIsMeasuredToItsEnd) {
+  const Soup needle{{Vec3d(0.5, 0.5, 0.0), Vec3d(0.501953125, 0.5, 0.0), Vec3d(0.5, 0.5, 1.5)}};
+  EXPECT_NEAR(error_of(one_group(strip(0, 2, 0) + needle, strip(0, 2, 0))), 1.5, 1e-9);
+}
+
+TEST(MeasureLevels, OfAFlatMeshNothingIsLeftButRounding) {
+  EXPECT_LE(error_of(one_group(strip(0, 1, 0.25) + strip(1, 2, 0.25), strip(0, 2, 0.25))), 1e-12);
+}
+
+TEST(MeasureLevels, AGroupIsTrueBesideWhatAnotherOneHasNotReplacedYet) {
+  // What the left group stood for is left to the right one's part, which is there from an error of 1 on only.
+  HandMade made;
+  made.add_group(1, true);
+  made.add_cluster(1, GroupId(1U), strip(0, 0.25, 0));
+  made.add_cluster(1, GroupId(2U), strip(0.25, 2, 0.25) + strip(2, 3, 1));
+  made.add_group(0, false);
+  made.add_cluster(0, GroupId(), strip(0, 2, 0));
+  made.add_group(0, false);
+  made.add_cluster(0, GroupId(), strip(2, 3, 0));
+  measure_levels(made.mesh, made.level0_cluster, 1.0, made.dag);
+  const double left = made.dag.groups[1].error, right = made.dag.groups[2].error;
+  EXPECT_NEAR(right, 1.0, 1e-9);
+  EXPECT_GE(left, 0.874);
+  for (const double threshold : {left, right}) {
+    EXPECT_LE(test::sampled_distance(test::source_of(made.mesh), test::cut_of(made.mesh, made.dag, threshold), 40),
+              threshold * (1.0 + 1e-9));
+  }
+}
+
+}  // namespace
+}  // namespace meshlode::builder

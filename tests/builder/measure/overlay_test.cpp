@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A triangle laid over a surface: what is said to be within is, and what is found to be far is as far as it says.
+#include "builder/measure/overlay.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "base/random.h"
+
+namespace meshlode::builder {
+namespace {
+
+using Triangle = LinkedSurface::Triangle;
+
+/// A surface with all that laying over it takes.
+struct Sheet {
+  std::vector<Vec3d> positions;
+  std::vector<Triangle> triangles, neighbor;
+  std::vector<Vec3f> normal;
+  SurfaceTree tree;
+  std::vector<TreeSlot> slot;
+
+  void link() {
+    neighbor = link_edges(std::span<const Triangle>(triangles), [](std::uint32_t corner) { return corner; });
+    for (const Triangle& t : triangles) {
+      const Vec3d n = glm::cross(positions[t[1]] - positions[t[0]], positions[t[2]] - positions[t[0]]);
+      normal.push_back(glm::length(n) > 0.0 ? Vec3f(glm::normalize(n)) : Vec3f(0.0F));
+    }
+    tree.build({positions, triangles});
+    slot.resize(triangles.size());
+    for (std::uint32_t i = 0; i < triangles.size(); ++i) slot[tree.triangle_at(TreeSlot(i))] = TreeSlot(i);
+  }
+  [[nodiscard]] LinkedSurface linked() const { return {positions, triangles, neighbor, normal, tree, slot}; }
+  [[nodiscard]] double distance_to(const Vec3d& p) const {
+    double least2 = std::numeric_limits<double>::infinity();
+    for (const Triangle& t : triangles) {
+      least2 = std::min(least2, point_triangle_distance2(p, {positions[t[0]], positions[t[1]], positions[t[2]]}));
+    }
+    return std::sqrt(least2);
+  }
+};
+
+/// A lattice of n by n squares over the unit square, with heights.
+template <class Height>
+Sheet lattice(std::uint32_t n, const Height& height) {
+  Sheet sheet;
+  for (std::uint32_t y = 0; y <= n; ++y) {
+    for (std::uint32_t x = 0; x <= n; ++x) {
+      const Vec3d at(static_cast<double>(x) / n, static_cast<double>(y) / n, 0.0);
+      sheet.positions.emplace_back(at.x, at.y, height(at));
+    }
+  }
+  for (std::uint32_t y = 0; y < n; ++y) {
+    for (std::uint32_t x = 0; x < n; ++x) {
+      const std::uint32_t a = y * (n + 1) + x, b = a + 1, c = a + n + 1, d = c + 1;
+      sheet.triangles.push_back({a, b, d});
+      sheet.triangles.push_back({a, d, c});
+    }
+  }
+  sheet.link();
+  return sheet;
+}
+
+/// The largest distance of points spread over a triangle.
+double sampled(const Sheet& sheet, const TriangleCorners& t) {
+  constexpr int kParts = 24;
+  double most = 0.0;
+  for (int i = 0; i <= kParts; ++i) {
+    for (int j = 0; i + j <= kParts; ++j) {
+      most = std::max(
+          most, sheet.distance_to(t[0] + (t[1] - t[0]) * (1.0 * i / kParts) + (t[2] - t[0]) * (1.0 * j / kParts)));
+    }
+  }
+  return most;
+}
+
+std::uint32_t nearest(const Sheet& sheet, const Vec3d& p) {
+  return sheet.tree.triangle_at(sheet.tree.find_nearest(sheet.tree.to_frame(p), {}, 0.0F).slot);
+}
+
+TEST(Overlay, OfAFlatSheetTheHeightIsKnownFromFewCorners) {
+  const Sheet sheet = lattice(4, [](const Vec3d&) { return 0.0; });
+  const LinkedSurface linked = sheet.linked();
+  Overlay overlay(linked, 48);
+  const TriangleCorners above{Vec3d(0.1, 0.1, 0.01), Vec3d(0.9, 0.2, 0.01), Vec3d(0.4, 0.8, 0.01)};
+  EXPECT_TRUE(overlay.is_within(above, nearest(sheet, above[0]), 0.0101));
+  EXPECT_GT(overlay.below().size(), 5U);
+  EXPECT_FALSE(overlay.is_within(above, nearest(sheet, above[0]), 0.0099));
+  ASSERT_FALSE(overlay.far().empty());
+  EXPECT_NEAR(overlay.far().front().distance, 0.01, 1e-12);
+}
+
+TEST(Overlay, APeakBetweenCornersThatAreNearIsFound) {
+  // A valley across the middle; the triangle's corners lie on both sides of it.
+  const Sheet sheet = lattice(8, [](const Vec3d& p) { return p.x == 0.5 ? -0.1 : 0.0; });
+  const LinkedSurface linked = sheet.linked();
+  Overlay overlay(linked, 48);
+  const TriangleCorners t{Vec3d(0.3, 0.4, 0.0), Vec3d(0.7, 0.45, 0.0), Vec3d(0.45, 0.6, 0.0)};
+  EXPECT_FALSE(overlay.is_within(t, nearest(sheet, t[0]), 0.01));
+  double most = 0.0;
+  for (const Overlay::Far& far : overlay.far()) most = std::max(most, far.distance);
+  EXPECT_GE(most, 0.999 * sampled(sheet, t));
+}
+
+TEST(Overlay, WhatIsWithinIsAndWhatIsFarIsAsFar) {
+  SplitMix64 random(7);
+  const auto unit = [&] { return random.unit(); };
+  int within = 0, far = 0;
+  for (int round = 0; round < 60; ++round) {
+    const double rough = 0.3 * unit() * unit();
+    const Sheet sheet = lattice(6, [&](const Vec3d&) { return rough * unit(); });
+    const LinkedSurface linked = sheet.linked();
+    Overlay overlay(linked, 48);
+    for (int i = 0; i < 10; ++i) {
+      const Vec3d at(unit(), unit(), 0.1 * unit());
+      TriangleCorners t;
+      for (Vec3d& p : t) p = at + 0.4 * Vec3d(unit(), unit(), 0.2 * unit());
+      const double known = 0.2 * unit();
+      const double truth = sampled(sheet, t);
+      if (overlay.is_within(t, nearest(sheet, t[0]), known)) {
+        EXPECT_LE(truth, known * (1.0 + 1e-9));
+        ++within;
+      } else {
+        for (const Overlay::Far& f : overlay.far()) {
+          if (f.distance == 0.0) continue;
+          EXPECT_NEAR(f.distance, sheet.distance_to(f.at), 1e-6);
+        }
+        ++far;
+      }
+    }
+  }
+  EXPECT_GT(within, 50);
+  EXPECT_GT(far, 50);
+}
+
+TEST(Overlay, BordersNeedlesAndCrowdedEdgesEndNothing) {
+  Sheet sheet;
+  sheet.positions = {Vec3d(0.0),           Vec3d(1.0, 0.0, 0.0), Vec3d(0.5, 1.0, 0.0), Vec3d(0.5, -1.0, 0.0),
+                     Vec3d(0.5, 0.0, 1.0), Vec3d(0.5, 0.0, 0.0)};
+  sheet.triangles = {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}, {0, 5, 1}, {2, 2, 2}};  // three at one edge, a needle, a point
+  sheet.link();
+  const LinkedSurface linked = sheet.linked();
+  Overlay overlay(linked, 48);
+  for (std::uint32_t start = 0; start < sheet.triangles.size(); ++start) {
+    const TriangleCorners t{Vec3d(-0.2, -0.5, 0.1), Vec3d(1.2, -0.4, 0.1), Vec3d(0.5, 0.9, 0.0)};
+    if (!overlay.is_within(t, start, 0.3)) continue;
+    EXPECT_LE(sampled(sheet, t), 0.3 + 1e-9);
+  }
+}
+
+}  // namespace
+}  // namespace meshlode::builder
