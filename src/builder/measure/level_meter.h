@@ -176,12 +176,12 @@ class LevelMeter::Owners {
 /// What a triangle of the surface is known to have over it: source that is about parallel, and source that is not, or
 /// ends there.
 constexpr std::uint8_t kSeen = 1, kOpen = 2;
-/// Within this cosine two surfaces are about parallel. 0.9 misses folds of the dragon (group 668).
+/// Within this cosine two surfaces are about parallel. 0.9 misses 5% of one group of the dragon's 711, 0.8 misses 10%.
 constexpr float kParallel = 0.95F;
 /// Searches go on to what is farther by this at least.
 constexpr double kTolerance = 1.002;
-/// Parts that searches may make: for each triangle that needs one, and spread over all of a level. The dragon's errors
-/// are the same with four times as many.
+/// Parts that searches may make: for each triangle that needs one, and spread over all of a level. With four and fifty
+/// times as many no error of the dragon grows by more than 2%.
 constexpr std::size_t kPartsPerTriangle = 16, kPartsOfLevel = 4000;
 /// A source of at most so many triangles costs little, and is looked at without shortcuts.
 constexpr std::size_t kFewSource = 30000;

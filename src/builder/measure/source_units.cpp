@@ -12,8 +12,10 @@ namespace meshlode::builder {
 
 namespace {
 
-/// A larger unit is dismissed later, a smaller one asks for more of its vertices twice.
-constexpr std::size_t kUnit = 24;
+/// A larger unit is dismissed later, a smaller one asks for more of its vertices twice: from 24 to 128 the dragon costs
+/// the same within 5%. Its vertices are numbered in a byte.
+constexpr std::size_t kUnit = 64;
+static_assert(3 * kUnit <= 256);
 
 /// Halves a cluster's triangles by the median along the longest side until they are units; calls add(unit).
 template <class Add>
