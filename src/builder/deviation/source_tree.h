@@ -39,12 +39,6 @@ struct SourceTree::Impl {
   [[nodiscard]] std::span<const std::uint32_t> triangles_around(std::uint32_t vertex) const {
     return std::span(triangle_of_corner).subspan(first_corner[vertex], first_corner[vertex + 1] - first_corner[vertex]);
   }
-  /// Those that a search from vertex to vertex goes on to. None at a hub: most of what meets there is far from whatever
-  /// led to it, and each group that has a part of it would look at all of it.
-  [[nodiscard]] std::span<const std::uint32_t> triangles_on_from(std::uint32_t vertex) const {
-    const std::span<const std::uint32_t> around = triangles_around(vertex);
-    return around.size() < kHubTriangles ? around : std::span<const std::uint32_t>();
-  }
 };
 
 }  // namespace meshlode::builder

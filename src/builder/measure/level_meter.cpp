@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "builder/measure/level_meter.h"
 
-#include "base/id_table.h"
 #include "base/parallel.h"
-#include "builder/deviation/attribute_deviation.h"
+#include "builder/measure/group_attributes.h"
 
 namespace meshlode::builder {
 
@@ -14,57 +13,27 @@ constexpr std::size_t kUnitsOfChunk = 64;
 /// Of the mesh's diagonal: what arithmetic alone makes of nothing.
 constexpr double kNoise = 1e-12;
 
-std::vector<std::uint32_t> wedges_of_exact(const PreparedMesh& mesh) {
-  std::vector<std::uint32_t> wedge_of;
-  if (mesh.exact_triangles == mesh.triangles) return wedge_of;
-  wedge_of.resize(mesh.exact_positions.size());
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    for (std::size_t k = 0; k < 3; ++k) wedge_of[mesh.exact_triangles[t][k]] = mesh.triangles[t][k];
-  }
-  return wedge_of;
-}
-
-/// LinkedSurface::neighbor of the source.
-std::vector<LinkedSurface::Triangle> link_source(const SourceTree::Impl& source) {
-  std::vector<LinkedSurface::Triangle> neighbor(source.triangles.size());
-  parallel_for_each_index(neighbor.size(), kLoopGrain, [&](std::size_t t) {
-    const auto corner = source.vertices(static_cast<std::uint32_t>(t));
-    for (std::size_t e = 0; e < 3; ++e) {
-      const std::uint32_t a = corner[e], b = corner[(e + 1) % 3];
-      std::uint32_t beyond = kNoId, count = 0;
-      for (const std::uint32_t other : source.triangles_around(a)) {
-        if (other == t) continue;
-        const auto c = source.vertices(other);
-        for (std::uint32_t k = 0; k < 3; ++k) {
-          if ((c[k] == a && c[(k + 1) % 3] == b) || (c[k] == b && c[(k + 1) % 3] == a)) {
-            beyond = 4 * other + k;
-            ++count;
-          }
-        }
-      }
-      neighbor[t][e] = count == 1 ? beyond : kNoId;
-    }
-  });
-  return neighbor;
-}
-
-std::uint64_t hash_position(const Vec3i& q) {
-  std::uint64_t h = 0;
-  for (int k = 0; k < 3; ++k) h = hash_word(h, static_cast<std::uint32_t>(q[k]));
-  return h;
+std::vector<std::uint32_t> level0_clusters(const CanonicalForm& form) {
+  std::vector<std::uint32_t> clusters;
+  clusters.reserve(form.level0_of_source.size());
+  for (const CanonicalForm::Level0Triangle& triangle : form.level0_of_source) clusters.push_back(triangle.cluster);
+  return clusters;
 }
 
 }  // namespace
 
-LevelMeter::LevelMeter(const PreparedMesh& mesh, std::span<const std::uint32_t> level0_cluster, double margin,
-                       LodDag& dag)
+LevelMeter::LevelMeter(const PreparedMesh& mesh, const CanonicalForm& form, double margin, LodDag& dag)
     : mesh_(mesh),
       margin_(margin),
+      form_(form),
       dag_(dag),
       source_(mesh.exact_positions, mesh.exact_triangles),
-      units_(source_.impl(), level0_cluster, dag.clusters.size()),
-      source_neighbor_(link_source(source_.impl())),
-      wedge_of_exact_(wedges_of_exact(mesh)),
+      units_(source_.impl(), level0_clusters(form), dag.clusters.size()),
+      source_neighbor_(link_edges(source_.impl().triangles,
+                                  [this](std::uint32_t position) {
+                                    const std::vector<std::uint32_t>& vertex_of = source_.impl().vertex_of;
+                                    return vertex_of.empty() ? position : vertex_of[position];
+                                  })),
       outputs_(dag.groups.size()),
       units_of_(dag.clusters.size()) {
   for (std::uint32_t c = 0; c < dag.clusters.size(); ++c) {
@@ -74,36 +43,28 @@ LevelMeter::LevelMeter(const PreparedMesh& mesh, std::span<const std::uint32_t> 
       owner_.resize(owner_.size() + units_.units()[u].vertex_count, c);
     }
   }
-  list_vertices();
+  find_new_vertices();
 }
 
-/// Which vertices of the DAG are in one place, and at which level it was first taken.
-void LevelMeter::list_vertices() {
-  const std::vector<Vec3i>& positions = dag_.vertex_position;
-  IdTable table(positions.size() / 2);
-  std::vector<std::uint32_t> level_of(positions.size(), kNoId);
-  vertex_of_.resize(positions.size());
-  for (const DagCluster& cluster : dag_.clusters) {
-    for (std::uint32_t v = cluster.first_vertex; v < cluster.first_vertex + cluster.vertex_count; ++v) {
-      const auto is_same = [&](std::uint32_t other) { return positions[other] == positions[v]; };
-      const auto hash = [&](std::uint32_t other) { return hash_position(positions[other]); };
-      vertex_of_[v] = table.find_or_insert(hash(v), v, is_same, hash).id;
-      level_of[vertex_of_[v]] = std::min(level_of[vertex_of_[v]], cluster.level);
+void LevelMeter::find_new_vertices() {
+  std::vector<std::uint32_t> level_of(form_.position_count, kNoId);  // per position, the finest that has it
+  const auto for_each_vertex = [&](const auto& visit) {
+    for (const DagCluster& cluster : dag_.clusters) {
+      for (std::uint32_t v = cluster.first_vertex; v < cluster.first_vertex + cluster.vertex_count; ++v) {
+        visit(v, cluster.level, level_of[form_.position_of_vertex[v]]);
+      }
     }
-  }
-  is_new_.resize(positions.size());
-  for (const DagCluster& cluster : dag_.clusters) {
-    for (std::uint32_t v = cluster.first_vertex; v < cluster.first_vertex + cluster.vertex_count; ++v) {
-      is_new_[v] = level_of[vertex_of_[v]] == cluster.level ? 1 : 0;
-    }
-  }
+  };
+  for_each_vertex([](std::uint32_t, std::uint32_t level, std::uint32_t& finest) { finest = std::min(finest, level); });
+  is_new_.resize(form_.position_of_vertex.size());
+  for_each_vertex([&](std::uint32_t v, std::uint32_t level, std::uint32_t finest) { is_new_[v] = level == finest; });
 }
 
 void LevelMeter::measure_level(std::uint32_t first_group, std::uint32_t end_group) {
   begin_level(first_group, end_group);
   const auto is_terminal = [](const DagGroup& group) { return group.is_terminal; };
   if (std::all_of(dag_.groups.begin() + first_group, dag_.groups.begin() + end_group, is_terminal)) return;
-  const LevelSurface surface(dag_, mesh_.grid, vertex_of_, first_group, end_group, outputs_);
+  const LevelSurface surface(dag_, mesh_.grid, form_.position_of_vertex, first_group, end_group, outputs_);
   std::vector<UnitChunk> chunks = chunk_units();
   std::vector<Made> made = made_clusters(surface);
   seen_ = std::vector<std::atomic<std::uint8_t>>(surface.triangles.size());
@@ -201,41 +162,8 @@ void LevelMeter::finish_groups(std::span<const Made> made) {
     if (group.is_terminal) return;
     group.deviation = known(g).found;
     group.error = std::max(known(g).floor, margin_ * known(g).found);
-    measure_attributes_of(g, near[i]);
+    measure_group_attributes(source_, mesh_, form_, outputs_[g], near[i], dag_, group);
   });
-}
-
-void LevelMeter::measure_attributes_of(std::uint32_t g, std::span<const TreeSlot> near) {
-  DagGroup& group = dag_.groups[g];
-  double normal_floor = 0.0, uv_floor = 0.0;
-  for (std::uint32_t c = group.first_cluster; c < group.first_cluster + group.cluster_count; ++c) {
-    const GroupId own = dag_.clusters[c].own_group;
-    if (!own.is_valid()) continue;
-    normal_floor = std::max(normal_floor, dag_.groups[own.value].normal_deviation);
-    uv_floor = std::max(uv_floor, dag_.groups[own.value].uv_deviation);
-  }
-  std::vector<Vec3d> positions;
-  std::vector<std::array<std::uint32_t, 3>> triangles;
-  std::vector<float> attributes;
-  const std::size_t stride = mesh_.layout.stride();
-  for (const std::uint32_t c : outputs_[g]) {
-    const DagCluster& cluster = dag_.clusters[c];
-    const auto base = static_cast<std::uint32_t>(positions.size());
-    for (std::uint32_t v = cluster.first_vertex; v < cluster.first_vertex + cluster.vertex_count; ++v) {
-      positions.push_back(mesh_.grid.decode(dag_.vertex_position[v]));
-    }
-    const auto from = dag_.vertex_attributes.begin() + static_cast<std::ptrdiff_t>(cluster.first_vertex * stride);
-    attributes.insert(attributes.end(), from, from + static_cast<std::ptrdiff_t>(cluster.vertex_count * stride));
-    for (std::uint32_t t = cluster.first_triangle; t < cluster.first_triangle + cluster.triangle_count; ++t) {
-      const auto& l = dag_.triangles[t];
-      triangles.push_back({base + l[0], base + l[1], base + l[2]});
-    }
-  }
-  const AttributeDeviation a =
-      measure_attributes(source_, {mesh_.wedge_attributes, mesh_.exact_triangles, wedge_of_exact_},
-                         {positions, triangles}, {attributes, triangles}, mesh_.layout, near);
-  group.normal_deviation = std::max(normal_floor, a.normal);
-  group.uv_deviation = std::max(uv_floor, a.uv);
 }
 
 /// Where what a vertex of the source belonged to was replaced, it belongs to the cluster that it is near to now.

@@ -22,6 +22,7 @@
 
 #include "builder/deviation/source_tree.h"
 #include "builder/lod_dag.h"
+#include "builder/measure/canonical_form.h"
 #include "builder/measure/level_surface.h"
 #include "builder/measure/overlay.h"
 #include "builder/measure/source_units.h"
@@ -31,8 +32,8 @@ namespace meshlode::builder {
 
 class LevelMeter {
  public:
-  /// `level0_cluster`: what became of each source triangle. What it is given must outlive it, but for that.
-  LevelMeter(const PreparedMesh& mesh, std::span<const std::uint32_t> level0_cluster, double margin, LodDag& dag);
+  /// `form` is the DAG's, whose triangles are in its order. What it is given must outlive it.
+  LevelMeter(const PreparedMesh& mesh, const CanonicalForm& form, double margin, LodDag& dag);
 
   /// All groups of a level; finer ones are measured.
   void measure_level(std::uint32_t first_group, std::uint32_t end_group);
@@ -88,14 +89,13 @@ class LevelMeter {
   class Owners;
 
   // level_meter.cpp
-  void list_vertices();
+  void find_new_vertices();
   void begin_level(std::uint32_t first_group, std::uint32_t end_group);
   [[nodiscard]] std::vector<UnitChunk> chunk_units() const;
   [[nodiscard]] std::vector<Made> made_clusters(const LevelSurface& surface) const;
   template <class Item>
   void merge(std::vector<Item>& items);
   void finish_groups(std::span<const Made> made);
-  void measure_attributes_of(std::uint32_t group, std::span<const TreeSlot> near);
   void hand_on(const LevelSurface& surface, std::span<const UnitChunk> chunks);
 
   // over_surface.cpp: the source against the surface
@@ -126,13 +126,12 @@ class LevelMeter {
 
   const PreparedMesh& mesh_;
   double margin_;
+  const CanonicalForm& form_;
   LodDag& dag_;
   SourceTree source_;
   SourceUnits units_;
   std::vector<LinkedSurface::Triangle> source_neighbor_;
-  std::vector<std::uint32_t> wedge_of_exact_;
   std::vector<std::vector<std::uint32_t>> outputs_;   ///< per group: the clusters that it made
-  std::vector<std::uint32_t> vertex_of_;              ///< per vertex of the DAG: the first in the same place
   std::vector<std::uint8_t> is_new_;                  ///< per vertex of the DAG: no finer cluster has it
   std::vector<std::uint32_t> owner_;                  ///< per vertex of a unit: the cluster that stands for it
   std::vector<std::vector<std::uint32_t>> units_of_;  ///< per cluster: the units with a vertex that it stands for

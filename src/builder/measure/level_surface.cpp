@@ -6,8 +6,8 @@
 namespace meshlode::builder {
 
 LevelSurface::LevelSurface(const LodDag& dag, const format::PositionGrid& grid,
-                           std::span<const std::uint32_t> vertex_of, std::uint32_t first_group, std::uint32_t end_group,
-                           std::span<const std::vector<std::uint32_t>> outputs) {
+                           std::span<const std::uint32_t> position_of_vertex, std::uint32_t first_group,
+                           std::uint32_t end_group, std::span<const std::vector<std::uint32_t>> outputs) {
   const std::uint32_t level = dag.groups[first_group].level;
   for (std::uint32_t c = 0; c < dag.clusters.size(); ++c) {
     const GroupId own = dag.clusters[c].own_group;
@@ -21,7 +21,7 @@ LevelSurface::LevelSurface(const LodDag& dag, const format::PositionGrid& grid,
   }
   start.push_back(static_cast<std::uint32_t>(triangles.size()));
   neighbor = link_edges(std::span<const Triangle>(triangles),
-                        [&](std::uint32_t corner) { return vertex_of[dag_vertex_[corner]]; });
+                        [&](std::uint32_t corner) { return position_of_vertex[dag_vertex_[corner]]; });
   normal.resize(triangles.size());
   parallel_for_each_index(triangles.size(), kLoopGrain,
                           [&](std::size_t k) { normal[k] = unit_normal(corners(static_cast<std::uint32_t>(k))); });

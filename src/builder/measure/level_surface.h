@@ -18,8 +18,9 @@ namespace meshlode::builder {
 struct LevelSurface {
   using Triangle = std::array<std::uint32_t, 3>;
 
-  /// `first_group`, `end_group`: the level's groups. `outputs`: per group of the DAG, the clusters made from it.
-  LevelSurface(const LodDag& dag, const format::PositionGrid& grid, std::span<const std::uint32_t> vertex_of,
+  /// `first_group`, `end_group`: the level's groups. `position_of_vertex`: CanonicalForm's. `outputs`: per
+  /// group of the DAG, the clusters made from it.
+  LevelSurface(const LodDag& dag, const format::PositionGrid& grid, std::span<const std::uint32_t> position_of_vertex,
                std::uint32_t first_group, std::uint32_t end_group, std::span<const std::vector<std::uint32_t>> outputs);
 
   [[nodiscard]] TriangleCorners corners(std::uint32_t triangle) const {

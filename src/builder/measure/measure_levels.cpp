@@ -8,9 +8,8 @@
 
 namespace meshlode::builder {
 
-void measure_levels(const PreparedMesh& mesh, std::span<const std::uint32_t> level0_cluster, double margin,
-                    LodDag& dag) {
-  LevelMeter meter(mesh, level0_cluster, margin, dag);
+void measure_levels(const PreparedMesh& mesh, const CanonicalForm& form, double margin, LodDag& dag) {
+  LevelMeter meter(mesh, form, margin, dag);
   for (std::size_t end = dag.groups.size(); end > 0;) {
     std::size_t begin = end - 1;
     while (begin > 0 && dag.groups[begin - 1].level == dag.groups[begin].level) --begin;

@@ -2,19 +2,15 @@
 // The errors of a finished DAG's groups, from its geometry and the source alone: the tier `measured`.
 #pragma once
 
-#include <cstdint>
-#include <span>
-#include <vector>
-
 #include "builder/lod_dag.h"
+#include "builder/measure/canonical_form.h"
 #include "builder/prepared.h"
 
 namespace meshlode::builder {
 
 /// Fills deviation, error, normal_deviation and uv_deviation of every group that is not terminal. The mesh has its
-/// exact triangles and its wedges still. `level0_cluster`: what became of each source triangle. `margin` >= 1: an error
-/// is so many times what was found.
-void measure_levels(const PreparedMesh& mesh, std::span<const std::uint32_t> level0_cluster, double margin,
-                    LodDag& dag);
+/// exact triangles. `form` is the DAG's, whose triangles are in its order. `margin` >= 1: an error is so many times
+/// what was found.
+void measure_levels(const PreparedMesh& mesh, const CanonicalForm& form, double margin, LodDag& dag);
 
 }  // namespace meshlode::builder

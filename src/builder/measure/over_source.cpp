@@ -21,7 +21,7 @@ void LevelMeter::ask_vertices(Made& made) const {
   double within = known(made.group).known;
   std::vector<TreeSlot> near(cluster.vertex_count);
   TreeSlot place;
-  for (std::uint32_t v = 0; v < cluster.vertex_count; ++v) {
+  const auto ask = [&](std::uint32_t v) {
     if (is_new_[cluster.first_vertex + v] != 0 || !place.is_valid()) {
       const Vec3d at = mesh_.grid.decode(dag_.vertex_position[cluster.first_vertex + v]);
       const SurfaceTree::Hit hit = find_near(source, at, place, within);
@@ -33,9 +33,12 @@ void LevelMeter::ask_vertices(Made& made) const {
       }
     }
     near[v] = place;
-  }
+  };
   made.near.resize(cluster.triangle_count);
-  for (std::uint32_t t = 0; t < cluster.triangle_count; ++t) {
+  for (std::uint32_t t = 0; t < cluster.triangle_count; ++t) {  // the order of triangles is canonical, of vertices not
+    for (const std::uint8_t v : dag_.triangles[cluster.first_triangle + t]) {
+      if (!near[v].is_valid()) ask(v);
+    }
     made.near[t] = near[dag_.triangles[cluster.first_triangle + t][0]];
   }
 }

@@ -59,7 +59,4 @@ class SourceUnits {
   std::vector<Vec3f> normals_;
 };
 
-/// The cluster of level 0 that each source triangle became, by its corners on the grid.
-[[nodiscard]] std::vector<std::uint32_t> match_level0(const PreparedMesh& mesh, const LodDag& dag);
-
 }  // namespace meshlode::builder

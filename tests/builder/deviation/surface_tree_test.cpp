@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "builder/deviation/capsules.h"
-#include "builder/deviation/patch.h"
 #include "builder/deviation/surfaces.h"
 #include "builder/odd_shapes.h"
 
@@ -249,59 +248,6 @@ TEST(SurfaceTree, CapsulesHoldWhatTheyWereMadeAroundAndAreNoFartherThanIt) {
     for (std::size_t c = 0; c < corners.size(); ++c) {
       const Vec3d away = Vec3d(p) - Vec3d(corners[c]);
       ASSERT_LE(double{distances2[static_cast<int>(c / 12)]}, glm::dot(away, away)) << "seed 7, round " << round;
-    }
-  }
-}
-
-/// Counts what it is asked; the distances are exact.
-class CountingProbes {
- public:
-  CountingProbes(const SurfaceTree& tree, double maximum) : tree_(tree), maximum_(maximum) {}
-  Probe measure(const Vec3d& point, TreeSlot place, std::uint32_t /*owner*/) {
-    ++count;
-    const Vec3f at = tree_.to_frame(point);
-    const TreeSlot slot = tree_.find_nearest(at, tree_.look_around(at, place, {}), 0.0F).slot;
-    const double value = std::sqrt(tree_.distance2_at(point, slot));
-    maximum_ = std::max(maximum_, value);
-    return {value, slot};
-  }
-  [[nodiscard]] double maximum() const { return maximum_; }
-  [[nodiscard]] const SurfaceTree& tree() const { return tree_; }
-
-  int count = 0;
-
- private:
-  const SurfaceTree& tree_;
-  double maximum_;
-};
-
-// The distance to one triangle is convex: over it a corner of a patch is the farthest, and nothing is to be found
-// inside, whatever its points promise. Over a valley between two triangles there is.
-TEST(PatchQueue, DividesOnlyWhatMayRaiseTheMaximum) {
-  for (const bool is_valley : {false, true}) {
-    judge::Surface surface{{{-9, 0, -9}, {9, 0, -9}, {0, 0, 18}}, {{0, 1, 2}}};
-    if (is_valley) {
-      surface = {{{-9, 0, 1}, {9, 0, 1}, {0, 0, 18}, {-9, 0, -1}, {9, 0, -1}, {0, 0, -18}}, {{0, 1, 2}, {3, 4, 5}}};
-    }
-    SurfaceTree tree;
-    tree.build({surface.positions, surface.triangles});
-    CountingProbes probes(tree, 0.0);
-    Patch patch;
-    patch.corner = {Vec3d(-1, 0.1, -1.5), Vec3d(1, 0.2, -1.5), Vec3d(0, 0.3, 1.4)};
-    for (std::size_t k = 0; k < 3; ++k) {
-      patch.at_corner[k] = probes.measure(patch.corner[k], TreeSlot{0U}, 0);
-      patch.at_middle[k] = probes.measure(patch.middle(k), TreeSlot{0U}, 0);
-    }
-    patch.set_range(patch.at_corner[0].value);
-    ASSERT_GT(patch.promise(kUsualRise.first), 1.1 * probes.maximum()) << "its points promise something";
-    PatchQueue<CountingProbes> queue(probes, kUsualRise, 0);
-    queue.add(patch);
-    queue.refine(100);
-    if (is_valley) {
-      EXPECT_GT(probes.count, 6);
-      EXPECT_GT(probes.maximum(), 0.95) << "the middle of the valley is 1 from both sides";
-    } else {
-      EXPECT_EQ(probes.count, 6);
     }
   }
 }

@@ -35,14 +35,6 @@ inline builder::GroupSurface as_group(const judge::Surface& surface) {
   return {surface.positions, surface.triangles};
 }
 
-/// `coarse` as the one group of level 1 over all of `fine`.
-inline builder::GroupDeviation measure_one_step(const judge::Surface& fine, const judge::Surface& coarse,
-                                                builder::DeviationTierOptions options = {}) {
-  const builder::SourceTree source(fine.positions, fine.triangles);
-  options.finer = as_group(fine);
-  return builder::measure_group(source, as_group(coarse), builder::initial_samples(source), options);
-}
-
 /// From a point to the nearest of all triangles.
 inline double brute_force(const judge::Surface& surface, const Vec3d& p) {
   double best = std::numeric_limits<double>::infinity();

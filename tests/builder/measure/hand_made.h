@@ -18,7 +18,6 @@ using Soup = std::vector<TriangleCorners>;
 struct HandMade {
   PreparedMesh mesh;
   LodDag dag;
-  std::vector<std::uint32_t> level0_cluster;
 
   HandMade() {
     mesh.grid.log2 = -10;
@@ -47,14 +46,13 @@ struct HandMade {
       if (own.is_valid()) continue;
       const auto first = static_cast<std::uint32_t>(mesh.exact_positions.size());
       mesh.exact_positions.insert(mesh.exact_positions.end(), t.begin(), t.end());
+      for (const Vec3d& p : t) mesh.exact_on_grid.push_back(Vec3i(glm::round(p * 1024.0)));
       mesh.exact_triangles.push_back({first, first + 1, first + 2});
-      level0_cluster.push_back(static_cast<std::uint32_t>(dag.clusters.size()));
     }
     cluster.vertex_count = static_cast<std::uint32_t>(dag.vertex_position.size()) - cluster.first_vertex;
     cluster.triangle_count = static_cast<std::uint32_t>(dag.triangles.size()) - cluster.first_triangle;
     dag.clusters.push_back(cluster);
     ++dag.groups.back().cluster_count;
-    mesh.triangles = mesh.exact_triangles;
   }
 };
 

@@ -8,11 +8,11 @@
 #include <tbb/task_arena.h>
 
 #include "builder/dag/build_dag.h"
-#include "builder/measure/source_units.h"
+#include "builder/measure/measure.h"
 #include "builder/plan/plan.h"
 #include "builder/prepare/prepare.h"
 #include "hand_made.h"
-#include "scene/samples/samples.h"
+#include "lab/samples/samples.h"
 
 namespace meshlode::builder {
 namespace {
@@ -21,11 +21,11 @@ struct Built {
   PreparedMesh mesh;
   LodDag dag;
 
-  void measure() { measure_levels(mesh, match_level0(mesh, dag), kMeasuredMargin, dag); }
+  void measure() { EXPECT_TRUE(builder::measure(mesh, format::ErrorTier::kMeasured, dag)); }
 };
 
 Built build(const scene::Primitive& shape) {
-  const scene::SourceMesh source = scene::as_mesh(shape);
+  const scene::SourceMesh source = lab::as_mesh(shape);
   const MeshPlan plan = plan_mesh(source, {}, {}, "m");
   Built built{*prepare_mesh(source, plan.layout, {}), {}};
   Result<LodDag> dag = build_dag(built.mesh, {});
@@ -43,7 +43,7 @@ std::vector<double> errors_of(const LodDag& dag) {
 }
 
 std::vector<scene::Primitive> shapes() {
-  return {scene::make_rock(12), scene::make_terrain(24, 24), scene::make_foliage(150), scene::make_box_soup(40)};
+  return {lab::make_rock(12), lab::make_terrain(24, 24), lab::make_foliage(150), lab::make_box_soup(40)};
 }
 
 TEST(MeasureLevels, CutsAreAsTrueAsTheySay) {
@@ -75,7 +75,7 @@ TEST(MeasureLevels, ErrorsGrowFromFineToCoarse) {
 }
 
 TEST(MeasureLevels, ThreadsDoNotMatter) {
-  Built one = build(scene::make_terrain(96, 96));
+  Built one = build(lab::make_terrain(96, 96));
   Built many = one;
   tbb::task_arena(1).execute([&] { one.measure(); });
   tbb::task_arena(4).execute([&] { many.measure(); });
@@ -83,7 +83,7 @@ TEST(MeasureLevels, ThreadsDoNotMatter) {
 }
 
 TEST(MeasureLevels, AFrameOfAnotherSizeMeasuresTheSame) {
-  Built usual = build(scene::make_rock(12));
+  Built usual = build(lab::make_rock(12));
   for (const int log2 : {-90, 80}) {
     Built scaled = usual;
     const double scale = std::ldexp(1.0, log2);
@@ -97,16 +97,6 @@ TEST(MeasureLevels, AFrameOfAnotherSizeMeasuresTheSame) {
       if (usual.dag.groups[g].is_terminal) continue;
       EXPECT_NEAR(scaled.dag.groups[g].error / scale / usual.dag.groups[g].error, 1.0, 1e-6);
     }
-  }
-}
-
-TEST(MeasureLevels, TheSourceIsFoundAgainByItsCornersOnTheGrid) {
-  const Built built = build(scene::make_terrain(24, 24));
-  const std::vector<std::uint32_t> cluster = match_level0(built.mesh, built.dag);
-  std::vector<std::uint32_t> count(built.dag.clusters.size(), 0);
-  for (const std::uint32_t c : cluster) ++count[c];
-  for (std::uint32_t c = 0; c < count.size(); ++c) {
-    EXPECT_EQ(count[c], built.dag.clusters[c].own_group.is_valid() ? 0U : built.dag.clusters[c].triangle_count);
   }
 }
 

@@ -166,8 +166,7 @@ TEST(Measure, AnEmptyDagAndAMeshOfOneClusterHaveNothingToMeasure) {
 TEST(Measure, AnErrorIsTheDeviationWithTheMarginAndTheLargestBelow) {
   for (const ErrorTier tier : {ErrorTier::kMeasured, ErrorTier::kCertified}) {
     const double margin = tier == ErrorTier::kMeasured ? kMeasuredMargin : 1.0;
-    for (const scene::Primitive& shape :
-         {lab::make_rock(9), lab::make_loose_pieces(test::kIsSanitized ? 300 : 600)}) {
+    for (const scene::Primitive& shape : {lab::make_rock(9), lab::make_loose_pieces(test::kIsSanitized ? 300 : 600)}) {
       const Built built = build(shape);
       const LodDag dag = measured(built, tier);
       std::size_t replaced = 0;

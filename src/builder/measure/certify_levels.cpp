@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "builder/measure/certify_levels.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "base/local_ids.h"
+#include "base/parallel.h"
+#include "builder/deviation/deviation.h"
+#include "builder/measure/group_attributes.h"
+#include "builder/measure/groups_by_level.h"
+
+namespace meshlode::builder {
+
+namespace {
+
+/// Clusters of the DAG as one surface, off the grid. Positions are in the order of their ids.
+struct ClusterSurface {
+  std::vector<Vec3d> positions;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+
+  ClusterSurface(const PreparedMesh& mesh, const LodDag& dag, std::span<const std::uint32_t> position_of_vertex,
+                 std::span<const std::uint32_t> clusters) {
+    std::size_t count = 0;
+    for (const std::uint32_t c : clusters) count += dag.clusters[c].triangle_count;
+    triangles.reserve(count);
+    LocalIds ids(count);
+    std::vector<Vec3i> on_grid;
+    for (const std::uint32_t c : clusters) {
+      const DagCluster& cluster = dag.clusters[c];
+      for (std::uint32_t t = cluster.first_triangle; t < cluster.first_triangle + cluster.triangle_count; ++t) {
+        std::array<std::uint32_t, 3> corners{};
+        for (std::size_t k = 0; k < 3; ++k) {
+          const std::uint32_t vertex = cluster.first_vertex + dag.triangles[t][k];
+          corners[k] = ids.add(position_of_vertex[vertex]);
+          if (corners[k] == on_grid.size()) on_grid.push_back(dag.vertex_position[vertex]);
+        }
+        triangles.push_back(corners);
+      }
+    }
+    const std::vector<std::uint32_t> place = ids.sort();
+    positions.resize(on_grid.size());
+    for (std::size_t p = 0; p < on_grid.size(); ++p) positions[place[p]] = mesh.grid.decode(on_grid[p]);
+    for (auto& corners : triangles) {
+      for (std::uint32_t& corner : corners) corner = place[corner];
+    }
+  }
+  [[nodiscard]] GroupSurface surface() const { return {positions, triangles}; }
+};
+
+class Certifier {
+ public:
+  Certifier(const PreparedMesh& mesh, const CanonicalForm& form, LodDag& dag)
+      : mesh_(mesh),
+        form_(form),
+        dag_(dag),
+        source_(mesh.exact_positions, mesh.exact_triangles),
+        made_of_(clusters_made_of_groups(dag)),
+        bounds_(dag.triangles.size()) {
+    for (std::size_t t = 0; t < mesh.exact_triangles.size(); ++t) {
+      TriangleCorners3 exact, on_grid;
+      for (std::size_t k = 0; k < 3; ++k) {
+        exact[k] = mesh.exact_positions[mesh.exact_triangles[t][k]];
+        on_grid[k] = mesh.grid.decode(dag.vertex_position[form.vertices_of_source[t][k]]);
+      }
+      bounds_[form.level0_of_source[t].triangle] = initial_bound(exact, on_grid);
+    }
+  }
+
+  void run() {
+    for (const std::vector<std::uint32_t>& groups : groups_by_level(dag_)) {
+      parallel_for_each_index(groups.size(), 1, [&](std::size_t i) {
+        if (!dag_.groups[groups[i]].is_terminal) certify(groups[i]);
+      });
+    }
+  }
+
+ private:
+  [[nodiscard]] ClusterSurface surface_of(std::span<const std::uint32_t> clusters) const {
+    return {mesh_, dag_, form_.position_of_vertex, clusters};
+  }
+
+  void certify(std::uint32_t id) {
+    DagGroup& group = dag_.groups[id];
+    double floor = mesh_.level0_deviation;
+    std::vector<std::uint32_t> members(group.cluster_count);
+    for (std::uint32_t i = 0; i < group.cluster_count; ++i) {
+      members[i] = group.first_cluster + i;
+      const GroupId own = dag_.clusters[members[i]].own_group;
+      if (own.is_valid()) floor = std::max(floor, dag_.groups[own.value].error);
+    }
+    const ClusterSurface before = surface_of(members), after = surface_of(made_of_[id]);
+    const std::span<const TriangleBound> known =
+        std::span(bounds_).subspan(dag_.clusters[members.front()].first_triangle, before.triangles.size());
+    const CertifiedGroup certified = certify_group(before.surface(), known, after.surface());
+    group.deviation = certified.deviation;
+    group.error = std::max(floor, certified.deviation);
+    std::size_t next = 0;
+    for (const std::uint32_t c : made_of_[id]) {
+      const DagCluster& cluster = dag_.clusters[c];
+      for (std::uint32_t t = 0; t < cluster.triangle_count; ++t) {
+        bounds_[cluster.first_triangle + t] = certified.bounds[next++];
+      }
+    }
+    measure_group_attributes(source_, mesh_, form_, made_of_[id], {}, dag_, group);
+  }
+
+  const PreparedMesh& mesh_;
+  const CanonicalForm& form_;
+  LodDag& dag_;
+  SourceTree source_;
+  std::vector<std::vector<std::uint32_t>> made_of_;  ///< per group: the clusters made from it
+  std::vector<TriangleBound> bounds_;                ///< per triangle of the DAG
+};
+
+}  // namespace
+
+void certify_levels(const PreparedMesh& mesh, const CanonicalForm& form, LodDag& dag) {
+  Certifier(mesh, form, dag).run();
+}
+
+}  // namespace meshlode::builder

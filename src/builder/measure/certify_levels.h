@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The tier `certified`: what is proven of the triangles of a level is handed on to the triangles that replace them.
+#pragma once
+
+#include "builder/lod_dag.h"
+#include "builder/measure/canonical_form.h"
+#include "builder/prepared.h"
+
+namespace meshlode::builder {
+
+/// As measure_levels(), but that errors are upper bounds and need no margin.
+void certify_levels(const PreparedMesh& mesh, const CanonicalForm& form, LodDag& dag);
+
+}  // namespace meshlode::builder
