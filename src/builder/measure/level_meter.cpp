@@ -29,7 +29,7 @@ LevelMeter::LevelMeter(const PreparedMesh& mesh, const CanonicalForm& form, doub
       dag_(dag),
       source_(mesh.exact_positions, mesh.exact_triangles),
       units_(source_.impl(), level0_clusters(form), dag.clusters.size()),
-      source_neighbor_(link_edges(source_.impl().triangles,
+      source_neighbor_(link_edges(source_.impl().triangles, source_.impl().positions.size(),
                                   [this](std::uint32_t position) {
                                     const std::vector<std::uint32_t>& vertex_of = source_.impl().vertex_of;
                                     return vertex_of.empty() ? position : vertex_of[position];
@@ -64,7 +64,7 @@ void LevelMeter::measure_level(std::uint32_t first_group, std::uint32_t end_grou
   begin_level(first_group, end_group);
   const auto is_terminal = [](const DagGroup& group) { return group.is_terminal; };
   if (std::all_of(dag_.groups.begin() + first_group, dag_.groups.begin() + end_group, is_terminal)) return;
-  const LevelSurface surface(dag_, mesh_.grid, form_.position_of_vertex, first_group, end_group, outputs_);
+  const LevelSurface surface(dag_, mesh_.grid, form_, first_group, end_group, outputs_);
   std::vector<UnitChunk> chunks = chunk_units();
   std::vector<Made> made = made_clusters(surface);
   seen_ = std::vector<std::atomic<std::uint8_t>>(surface.triangles.size());
