@@ -2,6 +2,7 @@
 #include "builder/measure/level_meter.h"
 
 #include "base/parallel.h"
+#include "base/release.h"
 #include "builder/measure/group_attributes.h"
 
 namespace meshlode::builder {
@@ -13,16 +14,17 @@ constexpr std::size_t kUnitsOfChunk = 64;
 /// Of the mesh's diagonal: what arithmetic alone makes of nothing.
 constexpr double kNoise = 1e-12;
 
-std::vector<std::uint32_t> level0_clusters(const CanonicalForm& form) {
+std::vector<std::uint32_t> level0_clusters(CanonicalForm& form) {
   std::vector<std::uint32_t> clusters;
   clusters.reserve(form.level0_of_source.size());
   for (const CanonicalForm::Level0Triangle& triangle : form.level0_of_source) clusters.push_back(triangle.cluster);
+  release(form.level0_of_source);
   return clusters;
 }
 
 }  // namespace
 
-LevelMeter::LevelMeter(const PreparedMesh& mesh, const CanonicalForm& form, double margin, LodDag& dag)
+LevelMeter::LevelMeter(const PreparedMesh& mesh, CanonicalForm& form, double margin, LodDag& dag)
     : mesh_(mesh),
       margin_(margin),
       form_(form),
