@@ -102,8 +102,8 @@ class LevelMeter {
   // over_surface.cpp: the source against the surface
   void ask_units(const LevelSurface& surface, UnitChunk& chunk) const;
   void check_units(const LevelSurface& surface, UnitChunk& chunk, std::size_t extra_parts);
-  void mark_seen(const LevelSurface& surface, std::uint32_t triangle, std::uint32_t source_triangle, bool is_border);
-  [[nodiscard]] bool is_flat(const LevelSurface& surface, const SourceUnits::Triangle& triangle,
+  void mark_seen(const LevelSurface& surface, std::uint32_t triangle, const Vec3f& normal, bool is_border);
+  [[nodiscard]] bool is_flat(const LevelSurface& surface, const TriangleCorners& corners, const Vec3f& normal,
                              const std::array<std::uint32_t, 3>& near, double within) const;
 
   // over_source.cpp: the surface against the source

@@ -44,10 +44,4 @@ struct LevelSurface {
            std::span<const std::uint32_t> clusters, std::size_t triangle_count);
 };
 
-[[nodiscard]] inline Vec3f unit_normal(const TriangleCorners& corners) {
-  const Vec3d n = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
-  const double length = glm::length(n);
-  return length > 0.0 ? Vec3f(n / length) : Vec3f(0.0F);
-}
-
 }  // namespace meshlode::builder

@@ -20,6 +20,13 @@
 
 namespace meshlode::builder {
 
+/// Of unit length or 0.
+[[nodiscard]] inline Vec3f unit_normal(const TriangleCorners& corners) {
+  const Vec3d n = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
+  const double length = glm::length(n);
+  return length > 0.0 ? Vec3f(n / length) : Vec3f(0.0F);
+}
+
 /// A surface that another one is laid over.
 struct LinkedSurface {
   using Triangle = std::array<std::uint32_t, 3>;
@@ -28,13 +35,16 @@ struct LinkedSurface {
   /// Per triangle and edge, from that corner to the next: 4 times the triangle beyond and the edge's number there;
   /// kNoId: a border, or more than two meet.
   std::span<const Triangle> neighbor;
-  std::span<const Vec3f> normal;  ///< per triangle, of unit length or 0
+  std::span<const Vec3f> normal;  ///< per triangle: unit_normal(); empty: made whenever they are looked at
   const SurfaceTree& tree;
   std::span<const TreeSlot> slot;  ///< per triangle
 
   [[nodiscard]] TriangleCorners corners(std::uint32_t triangle) const {
     const Triangle& t = triangles[triangle];
     return {positions[t[0]], positions[t[1]], positions[t[2]]};
+  }
+  [[nodiscard]] Vec3f normal_of(std::uint32_t triangle) const {
+    return normal.empty() ? unit_normal(corners(triangle)) : normal[triangle];
   }
 };
 

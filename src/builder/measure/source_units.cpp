@@ -65,10 +65,6 @@ SourceUnits::SourceUnits(const SourceTree::Impl& source, std::span<const std::ui
   }
   first_unit_[cluster_count] = static_cast<std::uint32_t>(units_.size());
   find_borders(source);
-  normals_.resize(cluster_of.size());
-  parallel_for_each_index(normals_.size(), kLoopGrain, [&](std::size_t t) {
-    normals_[t] = unit_normal(source.corners(static_cast<std::uint32_t>(t)));
-  });
 }
 
 void SourceUnits::add_unit(const SourceTree::Impl& source, std::span<const std::uint32_t> triangles) {
