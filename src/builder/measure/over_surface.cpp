@@ -20,6 +20,12 @@ constexpr std::size_t kMostPieces = 48;
 /// Parts of the search for a triangle of several groups.
 constexpr std::size_t kPartsOfShared = 256;
 
+float longest_edge(const TriangleCorners& corners) {
+  const auto [a, b, c] = corners;
+  const double longest2 = std::max(glm::dot(b - a, b - a), std::max(glm::dot(c - b, c - b), glm::dot(a - c, a - c)));
+  return static_cast<float>(std::sqrt(longest2) * (1.0 + 1e-6));
+}
+
 }  // namespace
 
 void LevelMeter::ask_units(const LevelSurface& surface, UnitChunk& chunk) const {
@@ -56,6 +62,8 @@ void LevelMeter::ask_units(const LevelSurface& surface, UnitChunk& chunk) const 
     }
     list_moved(surface, chunk.units[i], chunk.near.data() + chunk.first_near[i], 0, chunk);
   }
+  chunk.near.shrink_to_fit();
+  chunk.moved.shrink_to_fit();
 }
 
 /// `normal`: of the source triangle.
@@ -124,8 +132,8 @@ void LevelMeter::check_units(const LevelSurface& surface, UnitChunk& chunk, std:
         is_at_border = is_at_border || is_border;
       }
       const float nearest = std::min(n[0].distance, std::min(n[1].distance, n[2].distance));
-      if (static_cast<double>(nearest) + static_cast<double>(t.longest) <= within) continue;
       if (k[0] == k[1] && k[1] == k[2]) continue;
+      if (static_cast<double>(nearest) + static_cast<double>(longest_edge(corners)) <= within) continue;
       if (!is_small && !is_at_border && is_flat(surface, corners, normal, k, within)) continue;
       const bool is_within = overlay.is_within(corners, k[0], within);
       for (const std::uint32_t below : overlay.below()) {

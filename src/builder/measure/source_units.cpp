@@ -84,9 +84,6 @@ void SourceUnits::add_unit(const SourceTree::Impl& source, std::span<const std::
       low = glm::min(low, source.positions[ids[k]]);
       high = glm::max(high, source.positions[ids[k]]);
     }
-    const auto [a, b, c] = source.corners(t);
-    const double longest2 = std::max(glm::dot(b - a, b - a), std::max(glm::dot(c - b, c - b), glm::dot(a - c, a - c)));
-    triangle.longest = static_cast<float>(std::sqrt(longest2) * (1.0 + 1e-6));
     triangles_.push_back(triangle);
   }
   unit.vertex_count = static_cast<std::uint32_t>(vertices_.size()) - unit.first_vertex;

@@ -25,7 +25,6 @@ class SourceUnits {
   };
   struct Triangle {
     std::uint32_t id = 0;                  ///< of the source
-    float longest = 0.0F;                  ///< edge
     std::array<std::uint8_t, 3> corner{};  ///< among the unit's vertices
   };
 
