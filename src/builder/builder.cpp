@@ -173,10 +173,6 @@ std::uint32_t promises_of(format::Promise promise) {
   return 0;
 }
 
-void free_exact(PreparedMesh& mesh) {
-  release(mesh.exact_positions, mesh.exact_on_grid, mesh.exact_triangles);
-}
-
 /// The levels of one prepared mesh, whose surface is freed: by coverage where it is an aggregate, else by distances.
 Result<LodDag> build_levels(PreparedMesh& mesh, bool is_aggregate, const Survey& found, const PaintedUnits& painted,
                             const PipelineOptions& options, const MeshOptions& own, const EncodeOptions& encoding,
@@ -184,13 +180,14 @@ Result<LodDag> build_levels(PreparedMesh& mesh, bool is_aggregate, const Survey&
   DagOptions coarsening = dag_options(options, mesh, encoding);
   coarsening.on_level = on_level;
   coarsening.simplify.painted = painted;
-  if (own.error_tier == format::ErrorTier::kQem) free_exact(mesh);
+  if (own.error_tier == format::ErrorTier::kQem) {
+    release(mesh.exact_positions, mesh.exact_on_grid, mesh.exact_triangles);
+  }
   Result<LodDag> dag = is_aggregate ? build_aggregate_dag_and_free(mesh, found.coarse.of_source, coarsening)
                                     : build_dag_and_free(mesh, coarsening);
   if (!dag) return dag;
   if (own.error_tier != format::ErrorTier::kQem) snap_attributes(mesh.layout, encoding, *dag);
-  const Status status = measure(mesh, own.error_tier, *dag);
-  free_exact(mesh);
+  const Status status = measure_and_free(mesh, own.error_tier, *dag);
   return status ? std::move(dag) : status.error();
 }
 

@@ -41,14 +41,18 @@ SourceTree::SourceTree(std::span<const Vec3d> positions, std::span<const std::ar
     : impl_(std::make_unique<Impl>()) {
   impl_->positions = positions;
   impl_->triangles = triangles;
+  bool has_hub = false;
   parallel_all(
       [&] {
         impl_->tree.build({positions, triangles},
                           triangles.size() <= most_held ? SurfaceTree::Leaves::kHeld : SurfaceTree::Leaves::kMade,
                           SurfaceTree::Capsules::kLater);
       },
-      [&] { impl_->list_corners(); });
-  if (impl_->has_hub()) impl_->tree.add_capsules();
+      [&] {
+        impl_->vertex_of = weld(positions);
+        has_hub = impl_->has_hub();
+      });
+  if (has_hub) impl_->tree.add_capsules();
   impl_->place.resize(triangles.size());
   parallel_for_each_index(triangles.size(), kLoopGrain, [&](std::size_t i) {
     const TreeSlot slot(i);
@@ -56,23 +60,12 @@ SourceTree::SourceTree(std::span<const Vec3d> positions, std::span<const std::ar
   });
 }
 
-void SourceTree::Impl::list_corners() {
-  vertex_of = weld(positions);
-  first_corner.assign(positions.size() + 2, 0);
-  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
-    for (const std::uint32_t v : vertices(t)) ++first_corner[v + 2];
-  }
-  for (std::size_t v = 2; v < first_corner.size(); ++v) first_corner[v] += first_corner[v - 1];
-  triangle_of_corner.resize(3 * triangles.size());
-  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
-    for (const std::uint32_t v : vertices(t)) triangle_of_corner[first_corner[v + 1]++] = t;
-  }
-  first_corner.pop_back();
-}
-
 bool SourceTree::Impl::has_hub() const {
-  for (std::uint32_t v = 0; v < positions.size(); ++v) {
-    if (triangles_around(v).size() >= kHubTriangles) return true;
+  std::vector<std::uint32_t> around(positions.size(), 0);
+  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+    for (const std::uint32_t v : vertices(t)) {
+      if (++around[v] >= kHubTriangles) return true;
+    }
   }
   return false;
 }

@@ -2,6 +2,7 @@
 #include "builder/measure/level_meter.h"
 
 #include "base/parallel.h"
+#include "base/release.h"
 #include "builder/measure/group_attributes.h"
 
 namespace meshlode::builder {
@@ -13,23 +14,24 @@ constexpr std::size_t kUnitsOfChunk = 64;
 /// Of the mesh's diagonal: what arithmetic alone makes of nothing.
 constexpr double kNoise = 1e-12;
 
-std::vector<std::uint32_t> level0_clusters(const CanonicalForm& form) {
+std::vector<std::uint32_t> level0_clusters(CanonicalForm& form) {
   std::vector<std::uint32_t> clusters;
   clusters.reserve(form.level0_of_source.size());
   for (const CanonicalForm::Level0Triangle& triangle : form.level0_of_source) clusters.push_back(triangle.cluster);
+  release(form.level0_of_source);
   return clusters;
 }
 
 }  // namespace
 
-LevelMeter::LevelMeter(const PreparedMesh& mesh, const CanonicalForm& form, double margin, LodDag& dag)
+LevelMeter::LevelMeter(const PreparedMesh& mesh, CanonicalForm& form, double margin, LodDag& dag)
     : mesh_(mesh),
       margin_(margin),
       form_(form),
       dag_(dag),
       source_(mesh.exact_positions, mesh.exact_triangles),
       units_(source_.impl(), level0_clusters(form), dag.clusters.size()),
-      source_neighbor_(link_edges(source_.impl().triangles,
+      source_neighbor_(link_edges(source_.impl().triangles, source_.impl().positions.size(),
                                   [this](std::uint32_t position) {
                                     const std::vector<std::uint32_t>& vertex_of = source_.impl().vertex_of;
                                     return vertex_of.empty() ? position : vertex_of[position];
@@ -64,7 +66,7 @@ void LevelMeter::measure_level(std::uint32_t first_group, std::uint32_t end_grou
   begin_level(first_group, end_group);
   const auto is_terminal = [](const DagGroup& group) { return group.is_terminal; };
   if (std::all_of(dag_.groups.begin() + first_group, dag_.groups.begin() + end_group, is_terminal)) return;
-  const LevelSurface surface(dag_, mesh_.grid, form_.position_of_vertex, first_group, end_group, outputs_);
+  const LevelSurface surface(dag_, mesh_.grid, form_, first_group, end_group, outputs_);
   std::vector<UnitChunk> chunks = chunk_units();
   std::vector<Made> made = made_clusters(surface);
   seen_ = std::vector<std::atomic<std::uint8_t>>(surface.triangles.size());

@@ -32,8 +32,9 @@ namespace meshlode::builder {
 
 class LevelMeter {
  public:
-  /// `form` is the DAG's, whose triangles are in its order. What it is given must outlive it.
-  LevelMeter(const PreparedMesh& mesh, const CanonicalForm& form, double margin, LodDag& dag);
+  /// `form` is the DAG's, whose triangles are in its order. What it is given must outlive it, but for
+  /// level0_of_source, which is freed.
+  LevelMeter(const PreparedMesh& mesh, CanonicalForm& form, double margin, LodDag& dag);
 
   /// All groups of a level; finer ones are measured.
   void measure_level(std::uint32_t first_group, std::uint32_t end_group);
@@ -101,8 +102,8 @@ class LevelMeter {
   // over_surface.cpp: the source against the surface
   void ask_units(const LevelSurface& surface, UnitChunk& chunk) const;
   void check_units(const LevelSurface& surface, UnitChunk& chunk, std::size_t extra_parts);
-  void mark_seen(const LevelSurface& surface, std::uint32_t triangle, std::uint32_t source_triangle, bool is_border);
-  [[nodiscard]] bool is_flat(const LevelSurface& surface, const SourceUnits::Triangle& triangle,
+  void mark_seen(const LevelSurface& surface, std::uint32_t triangle, const Vec3f& normal, bool is_border);
+  [[nodiscard]] bool is_flat(const LevelSurface& surface, const TriangleCorners& corners, const Vec3f& normal,
                              const std::array<std::uint32_t, 3>& near, double within) const;
 
   // over_source.cpp: the surface against the source

@@ -5,23 +5,27 @@
 
 namespace meshlode::builder {
 
-LevelSurface::LevelSurface(const LodDag& dag, const format::PositionGrid& grid,
-                           std::span<const std::uint32_t> position_of_vertex, std::uint32_t first_group,
-                           std::uint32_t end_group, std::span<const std::vector<std::uint32_t>> outputs) {
+LevelSurface::LevelSurface(const LodDag& dag, const format::PositionGrid& grid, const CanonicalForm& form,
+                           std::uint32_t first_group, std::uint32_t end_group,
+                           std::span<const std::vector<std::uint32_t>> outputs) {
   const std::uint32_t level = dag.groups[first_group].level;
+  std::vector<std::uint32_t> clusters;
   for (std::uint32_t c = 0; c < dag.clusters.size(); ++c) {
     const GroupId own = dag.clusters[c].own_group;
     const DagGroup& coarser = dag.groups[dag.clusters[c].coarser_group.value];
     const bool is_there = !own.is_valid() || dag.groups[own.value].level < level;
-    if (is_there && (coarser.is_terminal || coarser.level > level)) add(dag, grid, c);
+    if (is_there && (coarser.is_terminal || coarser.level > level)) clusters.push_back(c);
   }
+  std::size_t count = 0;
+  for (const std::uint32_t c : clusters) count += dag.clusters[c].triangle_count;
   for (std::uint32_t g = first_group; g < end_group; ++g) {
-    start.push_back(static_cast<std::uint32_t>(triangles.size()));
-    for (const std::uint32_t c : outputs[g]) add(dag, grid, c);
+    start.push_back(static_cast<std::uint32_t>(count));
+    for (const std::uint32_t c : outputs[g]) count += dag.clusters[c].triangle_count;
+    clusters.insert(clusters.end(), outputs[g].begin(), outputs[g].end());
   }
-  start.push_back(static_cast<std::uint32_t>(triangles.size()));
-  neighbor = link_edges(std::span<const Triangle>(triangles),
-                        [&](std::uint32_t corner) { return position_of_vertex[dag_vertex_[corner]]; });
+  start.push_back(static_cast<std::uint32_t>(count));
+  add(dag, grid, form, clusters, count);
+  neighbor = link_edges(triangles, positions.size(), [](std::uint32_t corner) { return corner; });
   normal.resize(triangles.size());
   parallel_for_each_index(triangles.size(), kLoopGrain,
                           [&](std::size_t k) { normal[k] = unit_normal(corners(static_cast<std::uint32_t>(k))); });
@@ -31,17 +35,27 @@ LevelSurface::LevelSurface(const LodDag& dag, const format::PositionGrid& grid,
                           [&](std::size_t i) { slot[tree.triangle_at(TreeSlot(i))] = TreeSlot(i); });
 }
 
-void LevelSurface::add(const LodDag& dag, const format::PositionGrid& grid, std::uint32_t cluster_id) {
-  const DagCluster& from = dag.clusters[cluster_id];
-  const auto base = static_cast<std::uint32_t>(positions.size());
-  for (std::uint32_t v = from.first_vertex; v < from.first_vertex + from.vertex_count; ++v) {
-    dag_vertex_.push_back(v);
-    positions.push_back(grid.decode(dag.vertex_position[v]));
-  }
-  for (std::uint32_t t = from.first_triangle; t < from.first_triangle + from.triangle_count; ++t) {
-    const auto& local = dag.triangles[t];
-    triangles.push_back({base + local[0], base + local[1], base + local[2]});
-    cluster.push_back(cluster_id);
+void LevelSurface::add(const LodDag& dag, const format::PositionGrid& grid, const CanonicalForm& form,
+                       std::span<const std::uint32_t> clusters, std::size_t triangle_count) {
+  triangles.reserve(triangle_count);
+  cluster.reserve(triangle_count);
+  positions.reserve(triangle_count * 5 / 8);                   // a closed surface has half as many
+  std::vector<std::uint32_t> own(form.position_count, kNoId);  // of the DAG's positions
+  for (const std::uint32_t c : clusters) {
+    const DagCluster& from = dag.clusters[c];
+    for (std::uint32_t t = from.first_triangle; t < from.first_triangle + from.triangle_count; ++t) {
+      Triangle& corners = triangles.emplace_back();
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::uint32_t vertex = from.first_vertex + dag.triangles[t][k];
+        std::uint32_t& id = own[form.position_of_vertex[vertex]];
+        if (id == kNoId) {
+          id = static_cast<std::uint32_t>(positions.size());
+          positions.push_back(grid.decode(dag.vertex_position[vertex]));
+        }
+        corners[k] = id;
+      }
+      cluster.push_back(c);
+    }
   }
 }
 

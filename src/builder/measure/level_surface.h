@@ -10,6 +10,7 @@
 #include "base/vec.h"
 #include "builder/deviation/surface_tree.h"
 #include "builder/lod_dag.h"
+#include "builder/measure/canonical_form.h"
 #include "builder/measure/overlay.h"
 #include "format/grid.h"
 
@@ -18,9 +19,8 @@ namespace meshlode::builder {
 struct LevelSurface {
   using Triangle = std::array<std::uint32_t, 3>;
 
-  /// `first_group`, `end_group`: the level's groups. `position_of_vertex`: CanonicalForm's. `outputs`: per
-  /// group of the DAG, the clusters made from it.
-  LevelSurface(const LodDag& dag, const format::PositionGrid& grid, std::span<const std::uint32_t> position_of_vertex,
+  /// `first_group`, `end_group`: the level's groups. `outputs`: per group of the DAG, the clusters made from it.
+  LevelSurface(const LodDag& dag, const format::PositionGrid& grid, const CanonicalForm& form,
                std::uint32_t first_group, std::uint32_t end_group, std::span<const std::vector<std::uint32_t>> outputs);
 
   [[nodiscard]] TriangleCorners corners(std::uint32_t triangle) const {
@@ -30,7 +30,7 @@ struct LevelSurface {
 
   [[nodiscard]] LinkedSurface linked() const { return {positions, triangles, neighbor, normal, tree, slot}; }
 
-  std::vector<Vec3d> positions;
+  std::vector<Vec3d> positions;        ///< no two in one place
   std::vector<Triangle> triangles;     ///< those of the level's groups last, group by group
   std::vector<std::uint32_t> cluster;  ///< per triangle
   std::vector<Triangle> neighbor;      ///< LinkedSurface::neighbor
@@ -40,14 +40,8 @@ struct LevelSurface {
   std::vector<TreeSlot> slot;  ///< per triangle
 
  private:
-  void add(const LodDag& dag, const format::PositionGrid& grid, std::uint32_t cluster_id);
-  std::vector<std::uint32_t> dag_vertex_;  ///< per position
+  void add(const LodDag& dag, const format::PositionGrid& grid, const CanonicalForm& form,
+           std::span<const std::uint32_t> clusters, std::size_t triangle_count);
 };
-
-[[nodiscard]] inline Vec3f unit_normal(const TriangleCorners& corners) {
-  const Vec3d n = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
-  const double length = glm::length(n);
-  return length > 0.0 ? Vec3f(n / length) : Vec3f(0.0F);
-}
 
 }  // namespace meshlode::builder

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "base/release.h"
 #include "builder/measure/canonical_form.h"
 #include "builder/measure/certify_levels.h"
 #include "builder/measure/measure_levels.h"
@@ -33,9 +34,9 @@ void forget_errors(LodDag& dag) {
   }
 }
 
-}  // namespace
-
-Status measure(const PreparedMesh& mesh, format::ErrorTier tier, LodDag& dag) {
+/// `on_form`: is called once the canonical form is made.
+template <class OnForm>
+Status measure(const PreparedMesh& mesh, format::ErrorTier tier, LodDag& dag, const OnForm& on_form) {
   forget_errors(dag);
   const bool is_aggregate =
       std::any_of(dag.groups.begin(), dag.groups.end(), [](const DagGroup& group) { return group.is_aggregate; });
@@ -43,6 +44,7 @@ Status measure(const PreparedMesh& mesh, format::ErrorTier tier, LodDag& dag) {
   if (is_aggregate || tier == format::ErrorTier::kQem || dag.triangles.empty()) return Ok{};
   Result<CanonicalForm> form = canonical_form(mesh, dag);
   if (!form) return form.error();
+  on_form();
   dag.triangles.swap(form->triangles);
   if (tier == format::ErrorTier::kCertified) {
     certify_levels(mesh, *form, dag);
@@ -51,6 +53,18 @@ Status measure(const PreparedMesh& mesh, format::ErrorTier tier, LodDag& dag) {
   }
   dag.triangles.swap(form->triangles);
   return Ok{};
+}
+
+}  // namespace
+
+Status measure(const PreparedMesh& mesh, format::ErrorTier tier, LodDag& dag) {
+  return measure(mesh, tier, dag, [] {});
+}
+
+Status measure_and_free(PreparedMesh& mesh, format::ErrorTier tier, LodDag& dag) {
+  const Status status = measure(mesh, tier, dag, [&] { release(mesh.exact_on_grid); });
+  release(mesh.exact_positions, mesh.exact_on_grid, mesh.exact_triangles);
+  return status;
 }
 
 }  // namespace meshlode::builder

@@ -26,5 +26,7 @@ constexpr double kMeasuredMargin = 1.02;
 /// Error: kCheckFailed where the DAG's level 0 is another surface than the mesh's; cannot be of a DAG made from it.
 /// \pre `mesh` has its frame, its layout and, unless the tier is kQem, its exact triangles
 [[nodiscard]] Status measure(const PreparedMesh& mesh, format::ErrorTier tier, LodDag& dag);
+/// And frees the exact triangles: each part of them as soon as nothing needs it.
+[[nodiscard]] Status measure_and_free(PreparedMesh& mesh, format::ErrorTier tier, LodDag& dag);
 
 }  // namespace meshlode::builder

@@ -8,7 +8,7 @@
 
 namespace meshlode::builder {
 
-void measure_levels(const PreparedMesh& mesh, const CanonicalForm& form, double margin, LodDag& dag) {
+void measure_levels(const PreparedMesh& mesh, CanonicalForm& form, double margin, LodDag& dag) {
   LevelMeter meter(mesh, form, margin, dag);
   for (std::size_t end = dag.groups.size(); end > 0;) {
     std::size_t begin = end - 1;

@@ -9,8 +9,9 @@
 namespace meshlode::builder {
 
 /// Fills deviation, error, normal_deviation and uv_deviation of every group that is not terminal. The mesh has its
-/// exact triangles. `form` is the DAG's, whose triangles are in its order. `margin` >= 1: an error is so many times
+/// exact triangles. `form` is the DAG's, whose triangles are in its order; level0_of_source is
+/// freed. `margin` >= 1: an error is so many times
 /// what was found.
-void measure_levels(const PreparedMesh& mesh, const CanonicalForm& form, double margin, LodDag& dag);
+void measure_levels(const PreparedMesh& mesh, CanonicalForm& form, double margin, LodDag& dag);
 
 }  // namespace meshlode::builder

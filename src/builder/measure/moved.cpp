@@ -33,9 +33,11 @@ void LevelMeter::list_moved(const LevelSurface& surface, const OwnedUnit& unit, 
   for (const SourceUnits::Triangle& t : units_.triangles(of)) {
     const std::uint32_t from = from_of(t.corner[0]);
     if (!is_of_level(from) || from_of(t.corner[1]) != from || from_of(t.corner[2]) != from) continue;
+    GroupId last;
     for (const std::uint8_t v : t.corner) {
       const GroupId to = to_of(v);
-      if (to.is_valid() && to.value != from) chunk.moved.push_back({from, to.value, t.id, true});
+      if (to.is_valid() && to.value != from && to != last) chunk.moved.push_back({from, to.value, t.id, true});
+      last = to;
     }
   }
 }

@@ -46,7 +46,7 @@ void LevelMeter::ask_vertices(Made& made) const {
 /// The source near to a triangle of the surface is parallel to it and ends nowhere near.
 bool LevelMeter::is_plain(const LevelSurface& surface, std::uint32_t triangle, TreeSlot near) const {
   const std::uint32_t t = source_.impl().tree.triangle_at(near);
-  if (glm::dot(units_.normals()[t], surface.normal[triangle]) < kParallel) return false;
+  if (glm::dot(unit_normal(source_.impl().corners(t)), surface.normal[triangle]) < kParallel) return false;
   const std::array<std::uint32_t, 3> corner = source_.impl().vertices(t);
   return std::none_of(corner.begin(), corner.end(), [&](std::uint32_t v) { return units_.is_border(v); });
 }
@@ -63,7 +63,7 @@ void LevelMeter::check_made(const LevelSurface& surface, Made& made, std::size_t
   };
   BoundedSearch search(source, kTolerance, within);
   std::size_t searched = 0;
-  const LinkedSurface linked{impl.positions, impl.triangles, source_neighbor_, units_.normals(), source, impl.place};
+  const LinkedSurface linked{impl.positions, impl.triangles, source_neighbor_, {}, source, impl.place};
   Overlay overlay(linked, kMostPieces);
   for (std::uint32_t i = 0; i < made.triangle_count; ++i) {
     const std::uint32_t k = made.first_triangle + i;

@@ -20,6 +20,12 @@ constexpr std::size_t kMostPieces = 48;
 /// Parts of the search for a triangle of several groups.
 constexpr std::size_t kPartsOfShared = 256;
 
+float longest_edge(const TriangleCorners& corners) {
+  const auto [a, b, c] = corners;
+  const double longest2 = std::max(glm::dot(b - a, b - a), std::max(glm::dot(c - b, c - b), glm::dot(a - c, a - c)));
+  return static_cast<float>(std::sqrt(longest2) * (1.0 + 1e-6));
+}
+
 }  // namespace
 
 void LevelMeter::ask_units(const LevelSurface& surface, UnitChunk& chunk) const {
@@ -56,11 +62,13 @@ void LevelMeter::ask_units(const LevelSurface& surface, UnitChunk& chunk) const 
     }
     list_moved(surface, chunk.units[i], chunk.near.data() + chunk.first_near[i], 0, chunk);
   }
+  chunk.near.shrink_to_fit();
+  chunk.moved.shrink_to_fit();
 }
 
-void LevelMeter::mark_seen(const LevelSurface& surface, std::uint32_t triangle, std::uint32_t source_triangle,
-                           bool is_border) {
-  const bool is_open = is_border || glm::dot(units_.normals()[source_triangle], surface.normal[triangle]) < kParallel;
+/// `normal`: of the source triangle.
+void LevelMeter::mark_seen(const LevelSurface& surface, std::uint32_t triangle, const Vec3f& normal, bool is_border) {
+  const bool is_open = is_border || glm::dot(normal, surface.normal[triangle]) < kParallel;
   const std::uint8_t flags = is_open ? kSeen | kOpen : kSeen;
   if ((seen_[triangle].load(std::memory_order_relaxed) & flags) == flags) return;
   seen_[triangle].fetch_or(flags, std::memory_order_relaxed);
@@ -68,10 +76,8 @@ void LevelMeter::mark_seen(const LevelSurface& surface, std::uint32_t triangle, 
 
 /// Whether the planes of what its corners are near to tell that a source triangle is near to them where it passes from
 /// one to another: along an edge both heights are linear, and where they are equal it passes over.
-bool LevelMeter::is_flat(const LevelSurface& surface, const SourceUnits::Triangle& triangle,
+bool LevelMeter::is_flat(const LevelSurface& surface, const TriangleCorners& corners, const Vec3f& normal,
                          const std::array<std::uint32_t, 3>& near, double within) const {
-  const TriangleCorners corners = source_.impl().corners(triangle.id);
-  const Vec3f& normal = units_.normals()[triangle.id];
   std::array<std::array<double, 3>, 3> height;  // of corner i over the plane of triangle j
   for (std::size_t j = 0; j < 3; ++j) {
     if (!(glm::dot(normal, surface.normal[near[j]]) > kFlatCosine)) return false;
@@ -117,19 +123,21 @@ void LevelMeter::check_units(const LevelSurface& surface, UnitChunk& chunk, std:
     for (const SourceUnits::Triangle& t : units_.triangles(unit)) {
       const std::array<NearVertex, 3> n{near[t.corner[0]], near[t.corner[1]], near[t.corner[2]]};
       const std::array<std::uint32_t, 3> k{n[0].triangle, n[1].triangle, n[2].triangle};
+      const TriangleCorners corners = source.corners(t.id);
+      const Vec3f normal = unit_normal(corners);
       bool is_at_border = false;
       for (std::size_t j = 0; j < 3; ++j) {
         const bool is_border = units_.is_border(units_.vertices(unit)[t.corner[j]]);
-        mark_seen(surface, k[j], t.id, is_border);
+        mark_seen(surface, k[j], normal, is_border);
         is_at_border = is_at_border || is_border;
       }
       const float nearest = std::min(n[0].distance, std::min(n[1].distance, n[2].distance));
-      if (static_cast<double>(nearest) + static_cast<double>(t.longest) <= within) continue;
       if (k[0] == k[1] && k[1] == k[2]) continue;
-      if (!is_small && !is_at_border && is_flat(surface, t, k, within)) continue;
-      const bool is_within = overlay.is_within(source.corners(t.id), k[0], within);
+      if (static_cast<double>(nearest) + static_cast<double>(longest_edge(corners)) <= within) continue;
+      if (!is_small && !is_at_border && is_flat(surface, corners, normal, k, within)) continue;
+      const bool is_within = overlay.is_within(corners, k[0], within);
       for (const std::uint32_t below : overlay.below()) {
-        mark_seen(surface, below, t.id, is_at_border);
+        mark_seen(surface, below, normal, is_at_border);
         const GroupId to = maker(surface, below);
         if (owners.is_one() && to.is_valid() && to.value != chunk.group) {
           chunk.moved.push_back({chunk.group, to.value, t.id, true});

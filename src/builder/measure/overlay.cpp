@@ -41,7 +41,7 @@ Overlay::Piece& Overlay::push() {
 void Overlay::cut(std::size_t index) {
   const std::uint32_t k = stack_[index].triangle, entered = stack_[index].entered;
   const TriangleCorners corners = surface_.corners(k);
-  const Vec3d normal(surface_.normal[k]);
+  const Vec3d normal(surface_.normal_of(k));
   for (std::uint32_t e = 0; e < 3; ++e) {
     const std::uint32_t next = surface_.neighbor[k][e];
     if (next == kNoId || e == entered) continue;
@@ -51,7 +51,7 @@ void Overlay::cut(std::size_t index) {
     const Vec3d& inner = corners[(e + 2) % 3];
     // Halfway between the two triangles: through the edge and along the mean of the normals, whichever way it winds.
     const Vec3d its_inner = surface_.positions[surface_.triangles[other][(next % 4 + 2) % 3]] - from;
-    const Vec3d its_normal(surface_.normal[other]);
+    const Vec3d its_normal(surface_.normal_of(other));
     const bool is_turned = glm::dot(its_normal, glm::cross(its_inner, edge)) < 0.0;
     const Vec3d outward = glm::cross(edge, is_turned ? normal - its_normal : normal + its_normal);
     if (!(glm::dot(outward, inner - from) < 0.0)) continue;  // a needle, or folded back: it stays

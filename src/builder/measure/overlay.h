@@ -10,15 +10,22 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
-#include "base/id_table.h"
 #include "base/ids.h"
 #include "base/unset_vector.h"
 #include "builder/deviation/point_distance.h"
 #include "builder/deviation/surface_tree.h"
 
 namespace meshlode::builder {
+
+/// Of unit length or 0.
+[[nodiscard]] inline Vec3f unit_normal(const TriangleCorners& corners) {
+  const Vec3d n = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
+  const double length = glm::length(n);
+  return length > 0.0 ? Vec3f(n / length) : Vec3f(0.0F);
+}
 
 /// A surface that another one is laid over.
 struct LinkedSurface {
@@ -28,7 +35,7 @@ struct LinkedSurface {
   /// Per triangle and edge, from that corner to the next: 4 times the triangle beyond and the edge's number there;
   /// kNoId: a border, or more than two meet.
   std::span<const Triangle> neighbor;
-  std::span<const Vec3f> normal;  ///< per triangle, of unit length or 0
+  std::span<const Vec3f> normal;  ///< per triangle: unit_normal(); empty: made whenever they are looked at
   const SurfaceTree& tree;
   std::span<const TreeSlot> slot;  ///< per triangle
 
@@ -36,41 +43,40 @@ struct LinkedSurface {
     const Triangle& t = triangles[triangle];
     return {positions[t[0]], positions[t[1]], positions[t[2]]};
   }
+  [[nodiscard]] Vec3f normal_of(std::uint32_t triangle) const {
+    return normal.empty() ? unit_normal(corners(triangle)) : normal[triangle];
+  }
 };
 
-/// LinkedSurface::neighbor. `id(corner)`: equal where two corners are in one place.
+/// LinkedSurface::neighbor. `id(corner)`: below id_count; equal where two corners are in one place.
 template <class Id>
 [[nodiscard]] std::vector<LinkedSurface::Triangle> link_edges(std::span<const LinkedSurface::Triangle> triangles,
-                                                              const Id& id) {
-  std::vector<LinkedSurface::Triangle> neighbor(triangles.size(), {kNoId, kNoId, kNoId});
-  const auto ends = [&](std::uint32_t edge) {
-    const LinkedSurface::Triangle& t = triangles[edge / 4];
-    const std::uint32_t a = id(t[edge % 4]), b = id(t[(edge % 4 + 1) % 3]);
-    return std::uint64_t{std::min(a, b)} << 32U | std::max(a, b);
-  };
-  const auto hash = [&](std::uint32_t edge) { return hash_word(0, ends(edge)); };
-  IdTable table(triangles.size() * 3 / 2);
-  std::vector<std::uint32_t> crowded;
+                                                              std::size_t id_count, const Id& id) {
+  // The edges of each place that it is the lesser end of: the first here, the next in `neighbor`.
+  std::vector<std::uint32_t> first(id_count, kNoId);
+  std::vector<LinkedSurface::Triangle> neighbor(triangles.size());
   for (std::uint32_t k = 0; k < triangles.size(); ++k) {
+    const LinkedSurface::Triangle ids{id(triangles[k][0]), id(triangles[k][1]), id(triangles[k][2])};
     for (std::uint32_t e = 0; e < 3; ++e) {
-      const std::uint32_t edge = 4 * k + e;
-      const std::uint64_t key = ends(edge);
-      const auto entry = table.find_or_insert(
-          hash_word(0, key), edge, [&](std::uint32_t other) { return ends(other) == key; }, hash);
-      if (entry.is_new) continue;
-      std::uint32_t& back = neighbor[entry.id / 4][entry.id % 4];
-      if (back != kNoId) {
-        crowded.push_back(entry.id);
-        continue;
-      }
-      back = edge;
-      neighbor[k][e] = entry.id;
+      neighbor[k][e] = std::exchange(first[std::min(ids[e], ids[(e + 1) % 3])], 4 * k + e);
     }
   }
-  for (const std::uint32_t edge : crowded) {
-    std::uint32_t& there = neighbor[edge / 4][edge % 4];
-    if (there != kNoId) neighbor[there / 4][there % 4] = kNoId;
-    there = kNoId;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;  // other end, edge
+  for (std::uint32_t from = 0; from < id_count; ++from) {
+    edges.clear();
+    for (std::uint32_t edge = first[from]; edge != kNoId;) {
+      const LinkedSurface::Triangle& t = triangles[edge / 4];
+      edges.emplace_back(std::max(id(t[edge % 4]), id(t[(edge % 4 + 1) % 3])), edge);
+      edge = std::exchange(neighbor[edge / 4][edge % 4], kNoId);
+    }
+    std::sort(edges.begin(), edges.end());
+    for (std::size_t i = 0, end = 0; i < edges.size(); i = end) {
+      while (end < edges.size() && edges[end].first == edges[i].first) ++end;
+      if (end - i != 2) continue;
+      const std::uint32_t a = edges[i].second, b = edges[i + 1].second;
+      neighbor[a / 4][a % 4] = b;
+      neighbor[b / 4][b % 4] = a;
+    }
   }
   return neighbor;
 }

@@ -65,10 +65,6 @@ SourceUnits::SourceUnits(const SourceTree::Impl& source, std::span<const std::ui
   }
   first_unit_[cluster_count] = static_cast<std::uint32_t>(units_.size());
   find_borders(source);
-  normals_.resize(cluster_of.size());
-  parallel_for_each_index(normals_.size(), kLoopGrain, [&](std::size_t t) {
-    normals_[t] = unit_normal(source.corners(static_cast<std::uint32_t>(t)));
-  });
 }
 
 void SourceUnits::add_unit(const SourceTree::Impl& source, std::span<const std::uint32_t> triangles) {
@@ -88,9 +84,6 @@ void SourceUnits::add_unit(const SourceTree::Impl& source, std::span<const std::
       low = glm::min(low, source.positions[ids[k]]);
       high = glm::max(high, source.positions[ids[k]]);
     }
-    const auto [a, b, c] = source.corners(t);
-    const double longest2 = std::max(glm::dot(b - a, b - a), std::max(glm::dot(c - b, c - b), glm::dot(a - c, a - c)));
-    triangle.longest = static_cast<float>(std::sqrt(longest2) * (1.0 + 1e-6));
     triangles_.push_back(triangle);
   }
   unit.vertex_count = static_cast<std::uint32_t>(vertices_.size()) - unit.first_vertex;
@@ -106,17 +99,17 @@ void SourceUnits::add_unit(const SourceTree::Impl& source, std::span<const std::
 }
 
 void SourceUnits::find_borders(const SourceTree::Impl& source) {
-  is_border_.resize(source.first_corner.size() - 1);
-  parallel_for_each_index(is_border_.size(), kLoopGrain, [&](std::size_t v) {
-    std::uint32_t balance = 0;  // of a closed fan the next corners are the previous ones
-    const auto around = source.triangles_around(static_cast<std::uint32_t>(v));
-    for (const std::uint32_t t : around) {
-      const auto c = source.vertices(t);
+  std::vector<std::uint32_t> balance(source.positions.size(), 0);  // 0 around a closed fan: each next is a previous
+  is_border_.assign(source.positions.size(), 0);                   // corners there, up to 3
+  for (std::uint32_t t = 0; t < source.triangles.size(); ++t) {
+    const auto c = source.vertices(t);
+    for (const std::uint32_t v : c) {
       const std::size_t k = c[0] == v ? 0 : c[1] == v ? 1 : 2;
-      balance += c[(k + 1) % 3] * 2654435761U - c[(k + 2) % 3] * 2654435761U;
+      balance[v] += c[(k + 1) % 3] * 2654435761U - c[(k + 2) % 3] * 2654435761U;
+      is_border_[v] = static_cast<std::uint8_t>(std::min(is_border_[v] + 1, 3));
     }
-    is_border_[v] = balance != 0 || around.size() < 3 ? 1 : 0;
-  });
+  }
+  for (std::size_t v = 0; v < balance.size(); ++v) is_border_[v] = balance[v] != 0 || is_border_[v] < 3 ? 1 : 0;
 }
 
 }  // namespace meshlode::builder

@@ -25,7 +25,6 @@ class SourceUnits {
   };
   struct Triangle {
     std::uint32_t id = 0;                  ///< of the source
-    float longest = 0.0F;                  ///< edge
     std::array<std::uint8_t, 3> corner{};  ///< among the unit's vertices
   };
 
@@ -42,8 +41,6 @@ class SourceUnits {
   /// The units of a cluster of level 0.
   [[nodiscard]] std::uint32_t first_unit(std::uint32_t cluster) const { return first_unit_[cluster]; }
   [[nodiscard]] std::uint32_t end_unit(std::uint32_t cluster) const { return first_unit_[cluster + 1]; }
-  /// Per triangle of the source, of unit length or 0.
-  [[nodiscard]] const std::vector<Vec3f>& normals() const { return normals_; }
   /// Triangles do not close around it.
   [[nodiscard]] bool is_border(std::uint32_t vertex) const { return is_border_[vertex] != 0; }
 
@@ -56,7 +53,6 @@ class SourceUnits {
   std::vector<Triangle> triangles_;
   std::vector<std::uint32_t> first_unit_;
   std::vector<std::uint8_t> is_border_;
-  std::vector<Vec3f> normals_;
 };
 
 }  // namespace meshlode::builder

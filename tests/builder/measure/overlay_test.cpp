@@ -22,7 +22,7 @@ struct Sheet {
   std::vector<TreeSlot> slot;
 
   void link() {
-    neighbor = link_edges(std::span<const Triangle>(triangles), [](std::uint32_t corner) { return corner; });
+    neighbor = link_edges(triangles, positions.size(), [](std::uint32_t corner) { return corner; });
     for (const Triangle& t : triangles) {
       const Vec3d n = glm::cross(positions[t[1]] - positions[t[0]], positions[t[2]] - positions[t[0]]);
       normal.push_back(glm::length(n) > 0.0 ? Vec3f(glm::normalize(n)) : Vec3f(0.0F));
