@@ -31,11 +31,6 @@ LevelMeter::LevelMeter(const PreparedMesh& mesh, CanonicalForm& form, double mar
       dag_(dag),
       source_(mesh.exact_positions, mesh.exact_triangles),
       units_(source_.impl(), level0_clusters(form), dag.clusters.size()),
-      source_neighbor_(link_edges(source_.impl().triangles, source_.impl().positions.size(),
-                                  [this](std::uint32_t position) {
-                                    const std::vector<std::uint32_t>& vertex_of = source_.impl().vertex_of;
-                                    return vertex_of.empty() ? position : vertex_of[position];
-                                  })),
       outputs_(dag.groups.size()),
       units_of_(dag.clusters.size()) {
   for (std::uint32_t c = 0; c < dag.clusters.size(); ++c) {
@@ -62,11 +57,19 @@ void LevelMeter::find_new_vertices() {
   for_each_vertex([&](std::uint32_t v, std::uint32_t level, std::uint32_t finest) { is_new_[v] = level == finest; });
 }
 
+void LevelMeter::link_source() {
+  if (!source_neighbor_.empty()) return;
+  const SourceTree::Impl& source = source_.impl();
+  source_neighbor_ = link_edges(source.triangles, source.positions.size(), [&](std::uint32_t position) {
+    return source.vertex_of.empty() ? position : source.vertex_of[position];
+  });
+}
+
 void LevelMeter::measure_level(std::uint32_t first_group, std::uint32_t end_group) {
   begin_level(first_group, end_group);
   const auto is_terminal = [](const DagGroup& group) { return group.is_terminal; };
   if (std::all_of(dag_.groups.begin() + first_group, dag_.groups.begin() + end_group, is_terminal)) return;
-  const LevelSurface surface(dag_, mesh_.grid, form_, first_group, end_group, outputs_);
+  LevelSurface surface(dag_, mesh_.grid, form_, first_group, end_group, outputs_);
   std::vector<UnitChunk> chunks = chunk_units();
   std::vector<Made> made = made_clusters(surface);
   seen_ = std::vector<std::atomic<std::uint8_t>>(surface.triangles.size());
@@ -77,6 +80,8 @@ void LevelMeter::measure_level(std::uint32_t first_group, std::uint32_t end_grou
   parallel_for_each_index(chunks.size(), 1,
                           [&](std::size_t i) { check_units(surface, chunks[i], kPartsOfLevel / chunks.size()); });
   merge(chunks);
+  surface.free_search();
+  link_source();
   parallel_for_each_index(made.size(), 1,
                           [&](std::size_t i) { check_made(surface, made[i], kPartsOfLevel / made.size()); });
   merge(made);

@@ -91,6 +91,8 @@ class LevelMeter {
 
   // level_meter.cpp
   void find_new_vertices();
+  /// Late, where the first level's surface, the largest, is no longer searched: memory is least where both are not.
+  void link_source();
   void begin_level(std::uint32_t first_group, std::uint32_t end_group);
   [[nodiscard]] std::vector<UnitChunk> chunk_units() const;
   [[nodiscard]] std::vector<Made> made_clusters(const LevelSurface& surface) const;
@@ -131,11 +133,11 @@ class LevelMeter {
   LodDag& dag_;
   SourceTree source_;
   SourceUnits units_;
-  std::vector<LinkedSurface::Triangle> source_neighbor_;
-  std::vector<std::vector<std::uint32_t>> outputs_;   ///< per group: the clusters that it made
-  std::vector<std::uint8_t> is_new_;                  ///< per vertex of the DAG: no finer cluster has it
-  std::vector<std::uint32_t> owner_;                  ///< per vertex of a unit: the cluster that stands for it
-  std::vector<std::vector<std::uint32_t>> units_of_;  ///< per cluster: the units with a vertex that it stands for
+  std::vector<LinkedSurface::Triangle> source_neighbor_;  ///< of link_source()
+  std::vector<std::vector<std::uint32_t>> outputs_;       ///< per group: the clusters that it made
+  std::vector<std::uint8_t> is_new_;                      ///< per vertex of the DAG: no finer cluster has it
+  std::vector<std::uint32_t> owner_;                      ///< per vertex of a unit: the cluster that stands for it
+  std::vector<std::vector<std::uint32_t>> units_of_;      ///< per cluster: the units with a vertex that it stands for
 
   std::uint32_t first_ = 0, end_ = 0;          ///< the level's groups
   std::vector<Known> known_;                   ///< per group of the level

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "base/release.h"
 #include "base/vec.h"
 #include "builder/deviation/surface_tree.h"
 #include "builder/lod_dag.h"
@@ -29,6 +30,12 @@ struct LevelSurface {
   }
 
   [[nodiscard]] LinkedSurface linked() const { return {positions, triangles, neighbor, normal, tree, slot}; }
+
+  /// Frees what finds and passes to triangles: tree, slot, neighbor.
+  void free_search() {
+    tree = {};
+    release(neighbor, slot);
+  }
 
   std::vector<Vec3d> positions;        ///< no two in one place
   std::vector<Triangle> triangles;     ///< those of the level's groups last, group by group
