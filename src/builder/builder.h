@@ -10,18 +10,10 @@
 #include "builder/options.h"
 #include "builder/plan/plan.h"
 #include "builder/progress.h"
+#include "builder/report.h"
 #include "scene/scene.h"
 
 namespace meshlode::builder {
-
-struct PipelineReport {
-  std::uint64_t memory_estimate = 0;  ///< bytes that the process takes at most, as estimated before the build
-  std::vector<StageTime> stages;
-  std::vector<LevelTime> levels;        ///< mesh by mesh
-  std::vector<PlanDecision> decisions;  ///< of all meshes, in order
-  std::uint64_t stored_meshes = 0;      ///< those that came from the mesh store
-  std::uint64_t clusters = 0;           ///< of all meshes; 0: the asset draws nothing
-};
 
 /// Thread count is the caller's: run inside a tbb::task_arena or under tbb::global_control.
 [[nodiscard]] Result<std::vector<std::uint8_t>> build_lode(const scene::Scene& scene, const PipelineOptions& options,

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "builder/survey.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <utility>
+
+#include "builder/aggregate/material_looks.h"
+#include "builder/stage_options.h"
+
+namespace meshlode::builder {
+
+std::vector<AggregateDecision> decide_aggregates(const scene::Scene& scene, const PipelineOptions& options) {
+  std::vector<AggregateDecision> decisions;
+  for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
+    decisions.push_back(decide_aggregate(scene.meshes[i], aggregate_question(scene, i, options)));
+  }
+  return decisions;
+}
+
+Result<Survey> survey(const scene::Scene& scene, const PipelineOptions& options,
+                      std::vector<AggregateDecision> aggregates) {
+  Survey found;
+  found.aggregates = std::move(aggregates);
+  found.texels = texels_of_materials(scene);
+  if (options.promise != format::Promise::kPosition) found.extents = texel_extents_of_materials(scene);
+  std::vector<std::uint8_t> is_used(scene.materials.size(), 0);
+  for (std::size_t i = 0; i < scene.meshes.size(); ++i) add_materials(scene.meshes[i], found.aggregates[i], is_used);
+  if (!found.has_aggregates()) return found;
+  std::vector<std::uint8_t> wanted = is_used;
+  for (std::size_t i = 0; i < wanted.size(); ++i) wanted[i] = wanted[i] != 0 && needs_look(scene.materials[i]) ? 1 : 0;
+  std::vector<std::optional<MaterialLook>> looks(scene.materials.size());
+  if (options.looks != nullptr) looks = options.looks->read(scene, wanted);
+  std::vector<std::uint8_t> is_unknown = wanted;
+  for (std::size_t i = 0; i < wanted.size(); ++i) is_unknown[i] = wanted[i] != 0 && !looks[i] ? 1 : 0;
+  is_used.assign(is_used.size(), 0);
+  for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
+    // Pieces whose texture cannot be read stay as they are.
+    leave_out(scene.meshes[i], is_unknown, "what its texture shows is not known", found.aggregates[i]);
+    add_materials(scene.meshes[i], found.aggregates[i], is_used);
+  }
+  if (!found.has_aggregates()) return found;
+  Result<CoarseMaterials> coarse = derive_materials(scene, is_used, looks);
+  if (!coarse) return coarse.error();
+  found.coarse = std::move(*coarse);
+  return found;
+}
+
+}  // namespace meshlode::builder
