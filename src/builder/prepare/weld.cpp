@@ -9,6 +9,7 @@
 #include <tbb/parallel_sort.h>
 
 #include "base/parallel.h"
+#include "base/release.h"
 #include "base/unset_vector.h"
 #include "builder/prepare/flat_normal.h"
 
@@ -112,7 +113,7 @@ VertexIds weld_vertices(const Corners& corners, std::span<const Vec3i> points, c
   const Begins all = before.back();
   parallel_all([&] { mesh.positions.resize(all.points); }, [&] { mesh.wedge_position.resize(all.wedges); },
                [&] { mesh.wedge_attributes.resize(std::size_t{all.wedges} * stride); },
-               [&] { mesh.exact_positions.resize(all.exacts); }, [&] { mesh.exact_on_grid.resize(all.exacts); });
+               [&] { mesh.exact_positions.resize(all.exacts); });
   ids.wedge_of_exact.resize(all.exacts);
   parallel_for_each_chunk(order.size(), kLength, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
     Begins so_far = before[chunk];
@@ -130,7 +131,6 @@ VertexIds weld_vertices(const Corners& corners, std::span<const Vec3i> points, c
       if (begun.exacts != 0) {
         ids.wedge_of_exact[exact] = wedge;
         mesh.exact_positions[exact] = corners.positions[v] - mesh.origin;
-        mesh.exact_on_grid[exact] = points[v];
       }
       ids.exact_of[v] = exact;
     }
@@ -173,12 +173,27 @@ bool has_area(const PreparedMesh& mesh, const WedgeTriangle& triangle) {
   return ab.y * ac.z != ab.z * ac.y || ab.z * ac.x != ab.x * ac.z || ab.x * ac.y != ab.y * ac.x;
 }
 
+void keep_flat_normals(const Corners& corners, const std::vector<std::uint8_t>& is_used,
+                       std::span<const std::uint32_t> exact_of, std::span<const CanonicalTriangle> triangles,
+                       PreparedMesh& mesh) {
+  std::vector<std::uint32_t> vertex_of(mesh.exact_positions.size());
+  for (std::uint32_t v = 0; v < is_used.size(); ++v) {
+    if (is_used[v] != 0) vertex_of[exact_of[v]] = v;
+  }
+  mesh.exact_normals.resize(triangles.size());
+  parallel_for_each_index(triangles.size(), kLoopGrain, [&](std::size_t t) {
+    const auto& [a, b, c] = triangles[t].exact;
+    mesh.exact_normals[t] =
+        flat_normal(corners.positions[vertex_of[a]], corners.positions[vertex_of[b]], corners.positions[vertex_of[c]]);
+  });
+}
+
 }  // namespace
 
 void weld(const Corners& corners, std::span<const Vec3i> points, const std::vector<std::uint8_t>& is_used,
           bool keeps_normals, PreparedMesh& mesh) {
   const VertexIds ids = weld_vertices(corners, points, is_used, mesh);
-  const UnsetVector<CanonicalTriangle> triangles = weld_triangles(corners, ids.exact_of, mesh.dropped_duplicate);
+  UnsetVector<CanonicalTriangle> triangles = weld_triangles(corners, ids.exact_of, mesh.dropped_duplicate);
   resize_all(triangles.size(), mesh.triangles, mesh.exact_triangles, mesh.triangle_material);
   std::vector<std::uint32_t> collapsed(chunk_count(triangles.size(), kLoopGrain), 0);
   parallel_for_each_chunk(triangles.size(), kLoopGrain, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
@@ -191,16 +206,11 @@ void weld(const Corners& corners, std::span<const Vec3i> points, const std::vect
     }
   });
   for (const std::uint32_t count : collapsed) mesh.grid_collapsed += count;
-  if (!keeps_normals) return;
-  std::vector<std::uint32_t> vertex_of(mesh.exact_positions.size());
-  for (std::uint32_t v = 0; v < is_used.size(); ++v) {
-    if (is_used[v] != 0) vertex_of[ids.exact_of[v]] = v;
-  }
-  mesh.exact_normals.resize(triangles.size());
-  parallel_for_each_index(triangles.size(), kLoopGrain, [&](std::size_t t) {
-    const auto& [a, b, c] = triangles[t].exact;
-    mesh.exact_normals[t] =
-        flat_normal(corners.positions[vertex_of[a]], corners.positions[vertex_of[b]], corners.positions[vertex_of[c]]);
+  if (keeps_normals) keep_flat_normals(corners, is_used, ids.exact_of, triangles, mesh);
+  release(triangles);
+  mesh.exact_on_grid.resize(ids.wedge_of_exact.size());
+  parallel_for_each_index(ids.wedge_of_exact.size(), kLoopGrain, [&](std::size_t exact) {
+    mesh.exact_on_grid[exact] = mesh.positions[mesh.wedge_position[ids.wedge_of_exact[exact]]];
   });
 }
 
