@@ -16,8 +16,8 @@
 
 namespace meshlode::builder {
 
-/// Of a source of at most so many triangles the tree's leaves are held, 36 bytes a triangle; of a larger one, and where
-/// memory is short, they are made whenever they are looked at. The same numbers.
+/// Of a source of at most so many triangles the tree's leaves are held, 36 bytes a triangle; of a larger one they are
+/// made whenever they are looked at. The same numbers.
 inline constexpr std::size_t kMostHeldTriangles = 1048576;
 
 /// The source's surface before the grid, relative to the mesh's origin, in object units. Built once per mesh; queries
@@ -25,8 +25,7 @@ inline constexpr std::size_t kMostHeldTriangles = 1048576;
 class SourceTree {
  public:
   /// What the spans show must outlive the tree.
-  SourceTree(std::span<const Vec3d> positions, std::span<const std::array<std::uint32_t, 3>> triangles,
-             std::size_t most_held = kMostHeldTriangles);
+  SourceTree(std::span<const Vec3d> positions, std::span<const std::array<std::uint32_t, 3>> triangles);
   ~SourceTree();
   SourceTree(SourceTree&&) noexcept;
   SourceTree& operator=(SourceTree&&) noexcept;

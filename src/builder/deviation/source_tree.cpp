@@ -36,17 +36,17 @@ std::vector<std::uint32_t> weld(std::span<const Vec3d> positions) {
 
 }  // namespace
 
-SourceTree::SourceTree(std::span<const Vec3d> positions, std::span<const std::array<std::uint32_t, 3>> triangles,
-                       std::size_t most_held)
+SourceTree::SourceTree(std::span<const Vec3d> positions, std::span<const std::array<std::uint32_t, 3>> triangles)
     : impl_(std::make_unique<Impl>()) {
   impl_->positions = positions;
   impl_->triangles = triangles;
   bool has_hub = false;
   parallel_all(
       [&] {
-        impl_->tree.build({positions, triangles},
-                          triangles.size() <= most_held ? SurfaceTree::Leaves::kHeld : SurfaceTree::Leaves::kMade,
-                          SurfaceTree::Capsules::kLater);
+        impl_->tree.build(
+            {positions, triangles},
+            triangles.size() <= kMostHeldTriangles ? SurfaceTree::Leaves::kHeld : SurfaceTree::Leaves::kMade,
+            SurfaceTree::Capsules::kLater);
       },
       [&] {
         impl_->vertex_of = weld(positions);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The finished DAG from fine to coarse, for what is carried up it.
+// The finished DAG from fine to coarse.
 #pragma once
 
 #include <cstdint>

@@ -117,6 +117,8 @@ class LevelMeter {
   void list_moved(const LevelSurface& surface, const OwnedUnit& unit, const NearVertex* near, std::uint32_t near_all,
                   UnitChunk& chunk) const;
   void measure_moved(const LevelSurface& surface, std::span<Moved> moved) const;
+  void measure_all_moved(const LevelSurface& surface, std::span<Moved> moved) const;
+  void raise_by(std::span<const Moved> moved);
   void wait_for_others(const LevelSurface& surface, std::span<const UnitChunk> chunks);
 
   [[nodiscard]] bool is_of_level(std::uint32_t group) const { return group >= first_ && group < end_; }
@@ -185,6 +187,8 @@ constexpr double kTolerance = 1.002;
 /// Parts that searches may make: for each triangle that needs one, and spread over all of a level. With four and fifty
 /// times as many no error of the dragon grows by more than 2%.
 constexpr std::size_t kPartsPerTriangle = 16, kPartsOfLevel = 4000;
+/// The same of a source of at most kFewSource triangles, where one of a coarse level may lie over hundreds of them.
+constexpr std::size_t kPartsOfFew = 32;
 /// A source of at most so many triangles costs little, and is looked at without shortcuts.
 constexpr std::size_t kFewSource = 30000;
 

@@ -98,25 +98,37 @@ void LevelMeter::measure_moved(const LevelSurface& surface, std::span<Moved> mov
   }
 }
 
-/// A group's error is what keeps such a cut true; at most the other group's, so that there is no such cut.
+/// A group's error is what keeps such a cut true; at most the other group's, so that there is no such cut. What is
+/// raised may come to be larger than that of others that it was smaller than: so again, until nothing is.
 void LevelMeter::wait_for_others(const LevelSurface& surface, std::span<const UnitChunk> chunks) {
   std::vector<Moved> moved;
-  for (const UnitChunk& chunk : chunks) {
-    for (const Moved& m : chunk.moved) {
-      if (dag_.groups[m.to].error > dag_.groups[m.group].error) moved.push_back(m);
-    }
-  }
+  for (const UnitChunk& chunk : chunks) moved.insert(moved.end(), chunk.moved.begin(), chunk.moved.end());
   std::sort(moved.begin(), moved.end());
   const auto is_same = [](const Moved& a, const Moved& b) { return !(a < b); };
   moved.erase(std::unique(moved.begin(), moved.end(), is_same), moved.end());
+  const auto counts = [&](const Moved& m) { return dag_.groups[m.to].error > dag_.groups[m.group].error; };
+  for (auto open = moved.begin();;) {
+    const auto end = std::stable_partition(open, moved.end(), counts);
+    if (end == open) break;
+    measure_all_moved(surface, std::span(open, end));
+    open = end;
+    raise_by(std::span(moved.begin(), open));
+  }
+}
+
+/// Those of each group side by side; they are in the order of groups.
+void LevelMeter::measure_all_moved(const LevelSurface& surface, std::span<Moved> moved) const {
   std::vector<std::size_t> start;
   for (std::size_t i = 0; i < moved.size(); ++i) {
     if (i == 0 || moved[i].group != moved[i - 1].group) start.push_back(i);
   }
   start.push_back(moved.size());
   parallel_for_each_index(start.size() - 1, 1, [&](std::size_t i) {
-    measure_moved(surface, std::span(moved).subspan(start[i], start[i + 1] - start[i]));
+    measure_moved(surface, moved.subspan(start[i], start[i + 1] - start[i]));
   });
+}
+
+void LevelMeter::raise_by(std::span<const Moved> moved) {
   for (bool is_changed = true; is_changed;) {
     is_changed = false;
     for (const Moved& m : moved) {

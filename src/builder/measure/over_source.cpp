@@ -10,8 +10,9 @@ namespace {
 /// A triangle is looked at closely where a few of its points are so far, as a share of what is known. No error of the
 /// dragon is more than 2% below what looking at all of them finds.
 constexpr double kPromise = 0.6;
-/// One that lies over more source triangles is left to a search in bounds.
-constexpr std::size_t kMostPieces = 64;
+/// One that lies over more source triangles is left to a search in bounds, which costs more: with 64, staircases of
+/// 17,000 triangles had cuts at 1.06 and 1.10 times what they stored.
+constexpr std::size_t kMostPieces = 1024;
 
 }  // namespace
 
@@ -87,7 +88,7 @@ void LevelMeter::check_made(const LevelSurface& surface, Made& made, std::size_t
     ++searched;
     for (const Overlay::Rest& rest : overlay.rest()) search.add(rest.corners, impl.place_of(rest.near));
   }
-  (void)search.run(kPartsPerTriangle * searched + extra_parts);
+  (void)search.run((is_small ? kPartsOfFew : kPartsPerTriangle) * searched + extra_parts);
   raise(search.found().distance);
 }
 

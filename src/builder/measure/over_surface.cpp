@@ -52,6 +52,7 @@ void LevelMeter::ask_units(const LevelSurface& surface, UnitChunk& chunk) const 
     for (const std::uint32_t v : units_.vertices(unit)) {
       const SurfaceTree::Hit hit = find_near(tree, positions[v], place, kNearEnough * within);
       if (hit.slot.is_valid()) place = hit.slot;
+      if (!place.is_valid()) place = TreeSlot(0U);  // farther than floats reach: not on any real mesh
       double distance = std::sqrt(static_cast<double>(hit.distance2)) / tree.scale();
       if (distance > 0.99 * within) {  // as floats say
         distance = distance_at(tree, positions[v], place);

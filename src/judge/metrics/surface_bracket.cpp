@@ -356,11 +356,15 @@ Bracket bracket_one_way(const Surface& a, std::span<const std::uint32_t> triangl
     const std::size_t count = std::min(open.size(), std::max(kPiecesAtOnce, open.size() / 4));
     std::vector<Piece> taken(open.begin(), open.begin() + static_cast<std::ptrdiff_t>(count));
     open.erase(open.begin(), open.begin() + static_cast<std::ptrdiff_t>(count));
+    const std::uint64_t splits = found.splits;
+    const double lower = found.lower;
     const std::vector<Piece> left = look(count, enough, [&](std::size_t i, const Search& search) {
       search.renew(taken[i]);
       return taken[i];
     });
     open.insert(open.end(), left.begin(), left.end());
+    // Rounding alone tells these from what is near enough: they stay undecided.
+    if (found.splits == splits && found.lower == lower && left.size() >= count) break;
   }
   out.lower = std::max(0.0, found.lower);
   out.worst = found.worst;
