@@ -6,8 +6,8 @@
 #include <cstddef>
 #include <map>
 
-#include "builder/symmetric.h"
 #include "builder/aggregate/views.h"
+#include "builder/symmetric.h"
 
 namespace meshlode::builder {
 

@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "base/parallel.h"
-#include "builder/symmetric.h"
 #include "builder/aggregate/views.h"
+#include "builder/symmetric.h"
 
 namespace meshlode::builder {
 

@@ -9,8 +9,8 @@
 #include "builder/aggregate/blocks.h"
 #include "builder/aggregate/candidates.h"
 #include "builder/aggregate/pieces.h"
-#include "builder/symmetric.h"
 #include "builder/prepare/prepare.h"
+#include "builder/symmetric.h"
 #include "lab/samples/samples.h"
 
 namespace meshlode::builder {

@@ -63,9 +63,9 @@ TEST(AggregateParts, LeavesOfATreeAreOneAndItsTrunkIsNot) {
   EXPECT_EQ(is_used, (std::vector<std::uint8_t>{0, 1}));
   const AggregateDecision all = decide_aggregate(tree, {.choice = AggregateChoice::kAlways});
   EXPECT_EQ(all.most_triangles, (Most{0, 512}));
-  EXPECT_TRUE(decide_aggregate(mesh_of({lab::make_grass(2000), lab::make_foliage(2000)}),
-                               {.choice = AggregateChoice::kAuto})
-                  .most_triangles.empty())
+  EXPECT_TRUE(
+      decide_aggregate(mesh_of({lab::make_grass(2000), lab::make_foliage(2000)}), {.choice = AggregateChoice::kAuto})
+          .most_triangles.empty())
       << "all of it";
   EXPECT_FALSE(
       decide_aggregate(mesh_of({lab::make_rock(16), lab::make_foliage(200)}), {.choice = AggregateChoice::kAuto})

@@ -25,8 +25,8 @@ scene::SourceMesh tree(const std::string& name) {
 scene::Scene forest() {
   scene::Scene scene = lab::as_scene(tree("tree"));
   scene.materials.resize(2, scene.materials[0]);
-  for (scene::SourceMesh& mesh : std::vector<scene::SourceMesh>{
-           lab::as_mesh(lab::make_rock(8)), lab::as_mesh(lab::make_foliage(260)), tree("tree")}) {
+  for (scene::SourceMesh& mesh : std::vector<scene::SourceMesh>{lab::as_mesh(lab::make_rock(8)),
+                                                                lab::as_mesh(lab::make_foliage(260)), tree("tree")}) {
     scene.meshes.push_back(std::move(mesh));
   }
   scene.meshes[1].name = "tree#leaves";

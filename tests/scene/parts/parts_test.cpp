@@ -7,9 +7,9 @@
 
 #include <gtest/gtest.h>
 
+#include "lab/samples/samples.h"
 #include "scene/parts/pieces.h"
 #include "scene/parts/split_parts.h"
-#include "lab/samples/samples.h"
 
 namespace meshlode::scene {
 namespace {
