@@ -210,7 +210,8 @@ TEST(Models, DragonsDagKeepsItsLimitsAndValidateAndVerifyFindNothing) {
 
 TEST(Models, BunnyOfThreeMaterialsHasOneRootNoStuckGroupAndNoFindings) {
   MESHLODE_NEEDS_MODEL("bunny-three-materials.glb")
-  judge(build(import_model("bunny-three-materials.glb")), {});
+  // 2.021: one level more than the bunny of one material has, of 112 triangles.
+  judge(build(import_model("bunny-three-materials.glb")), {.stored_per_source = 2.03});
 }
 
 TEST(Models, FacetedBunnyHasOneRootNoStuckGroupAndNoFindings) {
