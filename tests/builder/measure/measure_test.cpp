@@ -95,7 +95,7 @@ void shuffle(std::size_t stride, SplitMix64& random, LodDag& dag) {
     for (std::uint32_t v = 0; v < cluster.vertex_count; ++v) {
       const std::size_t from = cluster.first_vertex + v, there = cluster.first_vertex + to[v];
       dag.vertex_position[there] = old.vertex_position[from];
-      std::copy_n(&old.vertex_attributes[from * stride], stride, &dag.vertex_attributes[there * stride]);
+      std::copy_n(old.vertex_attributes.data() + from * stride, stride, dag.vertex_attributes.data() + there * stride);
     }
     for (std::uint32_t t = 0; t < cluster.triangle_count; ++t) {
       const std::size_t turn = random.below(3);
