@@ -114,23 +114,4 @@ class IdTable {
   std::size_t count_ = 0;
 };
 
-/// A set of numbers below 2^32 - 1.
-class IdSet {
- public:
-  /// Whether `id` was not in.
-  bool insert(std::uint32_t id) {
-    return table_
-        .find_or_insert(
-            hash_word(0, id), id, [id](std::uint32_t other) { return other == id; },
-            [](std::uint32_t other) { return hash_word(0, other); })
-        .is_new;
-  }
-  [[nodiscard]] bool has(std::uint32_t id) const {
-    return table_.find(hash_word(0, id), [id](std::uint32_t other) { return other == id; }) != IdTable::kNone;
-  }
-
- private:
-  IdTable table_;
-};
-
 }  // namespace meshlode

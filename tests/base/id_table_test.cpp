@@ -82,17 +82,5 @@ TEST(IdTable, LowBitsOfAHashDependOnAllWords) {
   EXPECT_GT(low.size(), 56U);  // 64 of 4096 places: one collision is expected
 }
 
-TEST(IdSet, TellsFirstVisits) {
-  IdSet set;
-  std::set<std::uint32_t> known;
-  SplitMix64 random(5);
-  for (int i = 0; i < 5000; ++i) {
-    const std::uint32_t id = random.scaled_below(i % 2 == 0 ? 3000 : 0xFFFFFFFFU);
-    ASSERT_EQ(set.insert(id), known.insert(id).second) << id;
-  }
-  EXPECT_TRUE(set.insert(0xFFFFFFFEU));
-  EXPECT_FALSE(set.insert(0xFFFFFFFEU));
-}
-
 }  // namespace
 }  // namespace meshlode

@@ -170,10 +170,4 @@ Graph TriangleLinks::graph() {
   return rows();
 }
 
-Graph triangle_graph(std::span<const Corner3> corner_positions, std::span<const TriangleLink> links) {
-  TriangleLinks all(corner_positions);
-  all.add(links);
-  return all.graph();
-}
-
 }  // namespace meshlode::builder

@@ -64,8 +64,4 @@ class TriangleLinks {
   DisjointSets pieces_;
 };
 
-/// Of triangles and what else joins them.
-[[nodiscard]] Graph triangle_graph(std::span<const std::array<std::uint32_t, 3>> corner_positions,
-                                   std::span<const TriangleLink> links = {});
-
 }  // namespace meshlode::builder

@@ -49,10 +49,7 @@ class Interpolator {
  public:
   Interpolator(const SurfaceAttributes& surface, std::size_t stride, std::uint32_t triangle) {
     const WedgeTriangle& t = surface.triangles[triangle];
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::uint32_t wedge = surface.wedge_of.empty() ? t[k] : surface.wedge_of[t[k]];
-      at_[k] = surface.wedge_attributes.data() + wedge * stride;
-    }
+    for (std::size_t k = 0; k < 3; ++k) at_[k] = surface.wedge_attributes.data() + t[k] * stride;
   }
   [[nodiscard]] double value(std::size_t j, const Weights& w) const {
     return w.a * static_cast<double>(at_[0][j]) + w.b * static_cast<double>(at_[1][j]) +

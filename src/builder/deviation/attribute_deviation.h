@@ -14,8 +14,7 @@ namespace meshlode::builder {
 /// Attributes of a surface, per wedge as the layout says; triangles parallel to the surface's triangles.
 struct SurfaceAttributes {
   std::span<const float> wedge_attributes;
-  std::span<const WedgeTriangle> triangles;      ///< by ids that stand for wedges
-  std::span<const std::uint32_t> wedge_of = {};  ///< the wedge of an id; empty: ids are wedges
+  std::span<const WedgeTriangle> triangles;  ///< of wedges
 };
 
 constexpr std::size_t kFewTriangles = 500;

@@ -98,16 +98,6 @@ Highest highest_of(const LinearBounds& bounds) {
 BoundedSearch::BoundedSearch(const SurfaceTree& tree, double margin, double known)
     : tree_(tree), margin_(margin), beyond_(std::max(margin * known, kSmallest / tree.scale())) {}
 
-bool BoundedSearch::is_within(const std::array<Vec3d, 3>& corners, TreeSlot place) const {
-  if (is_near_throughout(corners, place)) return true;
-  Corner middle{(corners[0] + corners[1] + corners[2]) / 3.0, place};
-  double radius = 0.0;
-  for (const Vec3d& corner : corners) radius = std::max(radius, glm::distance(corner, middle.at));
-  const float enough = tree_.squared_in_frame(std::max(0.0, beyond_ - radius));
-  const SurfaceTree::Hit hit = find_near(middle, enough);
-  return (radius < beyond_ && hit.distance2 <= enough) || is_near_throughout(corners, hit.slot);
-}
-
 void BoundedSearch::add(const std::array<Vec3d, 3>& corners, TreeSlot place) {
   if (is_near_throughout(corners, place)) return;
   Part part;

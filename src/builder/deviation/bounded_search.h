@@ -32,9 +32,6 @@ class BoundedSearch {
   /// must outlive this. \pre margin >= 1
   BoundedSearch(const SurfaceTree& tree, double margin, double known);
 
-  /// Whether all of a triangle is seen at once not to be beyond. `place`: of the tree, where the search for what is
-  /// nearest begins; may be invalid.
-  [[nodiscard]] bool is_within(const std::array<Vec3d, 3>& corners, TreeSlot place) const;
   /// What of it may be beyond is divided by run().
   void add(const std::array<Vec3d, 3>& corners, TreeSlot place);
   /// Makes at most so many parts, and returns how many.

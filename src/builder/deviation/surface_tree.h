@@ -78,27 +78,6 @@ class SurfaceTree {
   /// them. The distance to a triangle is convex, so that whatever lies between the points is no farther.
   [[nodiscard]] Hit look_around(const std::array<Vec3f, 3>& points, TreeSlot slot) const;
 
-  /// The tree from above: levels of nodes, four children each, and leaves of four slots below the last. Children are
-  /// numbered within their level: those of node i are 4·i to 4·i + 3.
-  [[nodiscard]] std::uint32_t depth() const {
-    return level_start_.empty() ? 0 : static_cast<std::uint32_t>(level_start_.size() - 1);
-  }
-  struct Ball {
-    Vec3d center;
-    double radius = 0.0;  ///< negative: there is no such child
-  };
-  /// Around everything below child `child` of node `index` of a level, outside the tree's frame. \pre level < depth()
-  [[nodiscard]] Ball ball_of_child(std::uint32_t level, std::uint32_t index, std::uint32_t child) const {
-    const Node& node = nodes_[level_start_[level] + index];
-    Vec3d low, high;
-    for (int axis = 0; axis < 3; ++axis) {
-      low[axis] = static_cast<double>(node.low[static_cast<std::size_t>(axis)][child]);
-      high[axis] = static_cast<double>(node.high[static_cast<std::size_t>(axis)][child]);
-    }
-    if (!(low.x <= high.x)) return {Vec3d(0.0), -1.0};
-    return {center_ + (low + high) * (0.5 / scale_), 0.5 * glm::length(high - low) / scale_};
-  }
-
  private:
   struct Node {
     std::array<std::array<float, 4>, 3> low, high;  ///< [axis][child]

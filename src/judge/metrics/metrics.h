@@ -42,14 +42,6 @@ struct DeviationReport {
   [[nodiscard]] double rms() const { return a_to_b.rms > b_to_a.rms ? a_to_b.rms : b_to_a.rms; }
 };
 
-/// The larger of both ways' maxima, and where it is.
-struct LargestDeviation {
-  double max = 0.0;          ///< DeviationFrom::measure().max() of the same surfaces and options
-  Vec3d worst{0.0};          ///< the first point that is as far away
-  bool is_of_a = true;       ///< `worst` is a point of surface a
-  std::uint64_t points = 0;  ///< samples and vertices, both ways
-};
-
 /// A surface a that others are measured against, one after another: what is made of it is made once. Infinite where one
 /// surface has no triangle and the other has; 0 where both have none.
 class DeviationFrom {
@@ -60,10 +52,6 @@ class DeviationFrom {
   DeviationFrom(DeviationFrom&&) noexcept;
 
   [[nodiscard]] DeviationReport measure(const Surface& b) const;
-  /// The maximum alone. A search ends at the first triangle that is nearer than the largest distance found so far, and
-  /// there is none where the point before says that much: of surfaces that lie close to each other almost every one is
-  /// over with a triangle or two, however many cross there.
-  [[nodiscard]] LargestDeviation find_largest(const Surface& b) const;
 
  private:
   struct Parts;

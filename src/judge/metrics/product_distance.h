@@ -23,6 +23,14 @@
 
 namespace meshlode::judge {
 
+/// The larger of both ways' maxima, and where it is.
+struct LargestDeviation {
+  double max = 0.0;
+  Vec3d worst{0.0};          ///< the first point that is as far away
+  bool is_of_a = true;       ///< `worst` is a point of surface a
+  std::uint64_t points = 0;  ///< samples and vertices, both ways
+};
+
 /// How much a distance at a position counts; above 0 and finite.
 using DistanceWeight = std::function<double(const Vec3d&)>;
 

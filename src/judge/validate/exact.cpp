@@ -96,10 +96,4 @@ bool contains_point(const ExactBall& ball, const Vec3d& point) {
   return value.sign() >= 0;
 }
 
-int sign_of_dot(const Vec3d& a, const Vec3d& b) {
-  Expansion value;
-  for (int i = 0; i < 3; ++i) value.add_product(a[i], b[i]);
-  return value.sign();
-}
-
 }  // namespace meshlode::judge

@@ -16,7 +16,5 @@ struct ExactBall {
 [[nodiscard]] bool contains_ball(const ExactBall& outer, const ExactBall& inner);
 /// |ball.center - point| <= ball.radius, exactly. \pre all finite, radius >= 0
 [[nodiscard]] bool contains_point(const ExactBall& ball, const Vec3d& point);
-/// Sign of sum(terms[i].x * terms[i].y): -1, 0 or 1. For tests.
-[[nodiscard]] int sign_of_dot(const Vec3d& a, const Vec3d& b);
 
 }  // namespace meshlode::judge

@@ -168,7 +168,7 @@ TEST(Cluster, AFanOfNeedlesStaysLinear) {
 TEST(TriangleGraph, AnEdgeOfManyTrianglesStaysLinear) {
   std::vector<std::array<std::uint32_t, 3>> fan;
   for (std::uint32_t i = 0; i < 5000; ++i) fan.push_back({0, 1, i + 2});
-  const Graph graph = triangle_graph(fan);
+  const Graph graph = TriangleLinks(fan).graph();
   EXPECT_EQ(graph.neighbor.size(), 2U * 4999U);
 }
 
@@ -192,7 +192,7 @@ TEST(TriangleGraph, WithoutSomePiecesIsTheGraphOfTheRest) {
       if (piece[t] % 3 == 1) hosts[t] = 0;
       if (hosts[t] == kNoId) rest.push_back(triangles[t]);
     }
-    const Graph kept = links.without(hosts).graph(), made = triangle_graph(rest);
+    const Graph kept = links.without(hosts).graph(), made = TriangleLinks(rest).graph();
     EXPECT_EQ(kept.row_start, made.row_start);
     EXPECT_EQ(kept.neighbor, made.neighbor);
     EXPECT_EQ(kept.edge_weight, made.edge_weight);
@@ -201,7 +201,7 @@ TEST(TriangleGraph, WithoutSomePiecesIsTheGraphOfTheRest) {
 
 TEST(TriangleGraph, IsSymmetricWithoutLoopsOrRepeats) {
   std::vector<std::array<std::uint32_t, 3>> triangles = {{0, 1, 2}, {2, 1, 0}, {0, 0, 1}, {1, 2, 3}, {7, 8, 9}};
-  const Graph graph = triangle_graph(triangles);
+  const Graph graph = TriangleLinks(triangles).graph();
   std::set<std::pair<std::int32_t, std::int32_t>> seen;
   for (std::int32_t i = 0; i < 5; ++i) {
     for (auto e = graph.row_start[static_cast<std::size_t>(i)]; e < graph.row_start[static_cast<std::size_t>(i) + 1];

@@ -47,7 +47,7 @@ Graph sheet(std::uint32_t n) {
       corners.push_back({q, q + n + 2, q + n + 1});
     }
   }
-  return triangle_graph(corners);
+  return TriangleLinks(corners).graph();
 }
 
 /// Of the triangles of a sheet.
@@ -233,7 +233,7 @@ TEST(PartitionMerged, NothingOneNodeAndLooseNodes) {
   for (const std::int64_t size : sizes_of(labels, 16)) EXPECT_GT(size, 0);
   std::vector<std::array<std::uint32_t, 3>> loose(1000);
   for (std::uint32_t t = 0; t < loose.size(); ++t) loose[t] = {3 * t, 3 * t + 1, 3 * t + 2};
-  expect_partition(triangle_graph(loose), std::vector(loose.size(), Vec3f(0.0F)), 8, 4);
+  expect_partition(TriangleLinks(loose).graph(), std::vector(loose.size(), Vec3f(0.0F)), 8, 4);
 }
 
 /// A hub of ten thousand neighbours costs what its edges cost, in both directions of the search.

@@ -341,53 +341,6 @@ TEST(Metrics, WhatIsPaintedLiesOnTrianglesWithoutAreaTooButIsNotAskedAboutThere)
   EXPECT_EQ(used_vertices(painted.surface).size(), used_vertices(painted.surface, 4).size());
 }
 
-TEST(Metrics, TheLargestDeviationAloneIsTheSameWhereverItLies) {
-  RandomSource random(71);
-  Surface half = make_square(10.0, 0.0, 10);
-  for (Vec3d& p : half.positions) p.x *= 0.5;
-  const Surface square = make_square(10.0, 0.0, 10);
-  std::vector<std::pair<Surface, Surface>> pairs = {{square, half},
-                                                    {half, square},
-                                                    {square, square},
-                                                    {make_square(4.0, 0.0, 7), make_square(4.0, 0.25, 3)},
-                                                    {Surface{{{0, 0, 2}, {9, 9, 9}}, {{0, 0, 0}}}, square}};
-  for (int i = 0; i < 12; ++i) {
-    pairs.emplace_back(make_soup(random, 400, 1.0, Vec3d(0.0)), make_soup(random, 400, 1.0, Vec3d(0.1)));
-  }
-  for (const auto& [a, b] : pairs) {
-    const DeviationOptions options{5000, 3};
-    const DeviationReport whole = DeviationFrom(a, options).measure(b);
-    const LargestDeviation largest = DeviationFrom(a, options).find_largest(b);
-    EXPECT_DOUBLE_EQ(largest.max, whole.max());
-    EXPECT_EQ(largest.points, whole.a_to_b.points + whole.b_to_a.points);
-    EXPECT_DOUBLE_EQ(std::sqrt(TriangleTree(largest.is_of_a ? b : a).nearest(largest.worst).distance2), largest.max);
-  }
-  const Surface none;
-  EXPECT_EQ(DeviationFrom(none, {}).find_largest(none).max, 0.0);
-  EXPECT_TRUE(std::isinf(DeviationFrom(none, {}).find_largest(square).max));
-  EXPECT_TRUE(std::isinf(DeviationFrom(square, {}).find_largest(none).max));
-}
-
-// What costs is crossing triangles: every box has every point in it, and only the nearest triangle of all is exact.
-TEST(Metrics, TheLargestDeviationAloneIsFoundQuicklyAmongCrossingTriangles) {
-  RandomSource random(72);
-  Surface a;
-  for (std::uint32_t i = 0; i < 3000; ++i) {
-    for (int k = 0; k < 3; ++k) a.positions.push_back(random.in_cube(1.0));
-    a.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
-  }
-  Surface b = a;
-  for (Vec3d& p : b.positions) p += 1e-3 * random.in_cube(1.0);
-  const auto seconds = [&](auto&& measure) {
-    const std::clock_t start = std::clock();  // the processor's: what else runs says nothing
-    measure();
-    return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
-  };
-  const double whole = seconds([&] { (void)DeviationFrom(a, {20000, 1}).measure(b); });
-  const double largest = seconds([&] { (void)DeviationFrom(a, {20000, 1}).find_largest(b); });
-  EXPECT_LT(largest, 0.5 * whole);
-}
-
 TEST(Metrics, DoesNotDependOnTheNumberOfThreads) {
   RandomSource random(54);
   const Surface a = make_soup(random, 3000, 1.0, Vec3d(0.0)), b = make_soup(random, 3000, 1.0, Vec3d(0.1));
@@ -398,13 +351,6 @@ TEST(Metrics, DoesNotDependOnTheNumberOfThreads) {
   EXPECT_EQ(one.a_to_b.rms, two.a_to_b.rms);
   EXPECT_EQ(one.b_to_a.rms, two.b_to_a.rms);
   EXPECT_NE(one.a_to_b.rms, DeviationFrom(a, {20000, 10}).measure(b).a_to_b.rms) << "the seed is used";
-
-  LargestDeviation largest[2];
-  for (const int threads : {1, 2}) {
-    tbb::task_arena(threads).execute([&] { largest[threads - 1] = DeviationFrom(a, {20000, 9}).find_largest(b); });
-  }
-  EXPECT_EQ(largest[0].max, largest[1].max);
-  EXPECT_EQ(largest[0].worst, largest[1].worst);
 }
 
 }  // namespace

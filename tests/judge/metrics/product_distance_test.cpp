@@ -243,12 +243,13 @@ TEST(ProductDistance, IsThatOfThePositionsWhereNothingElseCounts) {
   RandomSource random(5);
   for (int round = 0; round < 4; ++round) {
     const ShadedSurface a = make_soup(random, 200, 1.0), b = make_soup(random, 150, 1.0);
-    const LargestDeviation positions = DeviationFrom(a.surface, kQuick).find_largest(b.surface);
+    const DeviationReport positions = DeviationFrom(a.surface, kQuick).measure(b.surface);
+    const bool is_of_a = positions.a_to_b.max >= positions.b_to_a.max;
     const LargestDeviation product = ProductDistanceFrom(a, {}, kQuick).find_largest(b);
-    EXPECT_NEAR(product.max, positions.max, 1e-6 * positions.max);
-    EXPECT_LE(glm::length(product.worst - positions.worst), 1e-6);
-    EXPECT_EQ(product.points, positions.points);
-    EXPECT_EQ(product.is_of_a, positions.is_of_a);
+    EXPECT_NEAR(product.max, positions.max(), 1e-6 * positions.max());
+    EXPECT_LE(glm::length(product.worst - (is_of_a ? positions.a_to_b : positions.b_to_a).worst), 1e-6);
+    EXPECT_EQ(product.points, positions.a_to_b.points + positions.b_to_a.points);
+    EXPECT_EQ(product.is_of_a, is_of_a);
   }
 }
 

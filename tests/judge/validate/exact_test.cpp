@@ -72,9 +72,11 @@ TEST(Exact, RandomBallsAgreeWithIntegers) {
 }
 
 TEST(Exact, CancellationKeepsTheSign) {
-  EXPECT_EQ(sign_of_dot({1e150, 1.0, -1e150}, {1.0, 1e-30, 1.0}), 1);
-  EXPECT_EQ(sign_of_dot({1e150, -1.0, -1e150}, {1.0, 1e-30, 1.0}), -1);
-  EXPECT_EQ(sign_of_dot({3.0, 4.0, -5.0}, {4.0, 2.0, 4.0}), 0);
+  const ExactBall ball{{0, 0, 0}, 0x1p60F};
+  EXPECT_TRUE(contains_point(ball, {0x1p60, 0.0, 0.0}));
+  EXPECT_FALSE(contains_point(ball, {0x1p60, 0x1p-100, 0.0}));
+  EXPECT_FALSE(contains_point(ball, {0x1p60, 0.0, -0x1p-100}));
+  EXPECT_TRUE(contains_point(ball, {0x1p60 * 0.6, 0x1p60 * 0.8 - 0x1p8, 0.0}));
 }
 
 }  // namespace

@@ -146,7 +146,7 @@ TEST_P(StoredErrors, AreJudgedAlikeInAllCutsAndInEachAlone) {
     const run::UniformCut selected = run::select_uniform(*asset, MeshId(0U), cut.threshold);
     const auto surface = surface_of_clusters(*asset, MeshId(0U), selected.clusters);
     ASSERT_TRUE(surface.ok());
-    const double sampled = from_source.find_largest(*surface).max;
+    const double sampled = from_source.measure(*surface).max();
     EXPECT_EQ(cut.stored, selected.stored_error);
     EXPECT_GE(cut.upper, sampled * (1.0 - 1e-9)) << cut.threshold;
     EXPECT_FALSE(cut.is_undecided()) << cut.threshold;
