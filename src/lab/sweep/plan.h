@@ -8,8 +8,8 @@
 #include <span>
 #include <vector>
 
-#include "lab/sweep/measure_asset.h"
 #include "lab/sweep/points.h"
+#include "lab/sweep/source_measure.h"
 
 namespace meshlode::lab {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A point's figures are those that judge and info have.
-#include "lab/sweep/measure_asset.h"
+#include "lab/sweep/source_measure.h"
 
 #include <gtest/gtest.h>
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "builder/builder.h"
-#include "lab/sweep/measure_asset.h"
+#include "lab/sweep/source_measure.h"
 #include "scene/import/import.h"
 
 namespace meshlode::lab {

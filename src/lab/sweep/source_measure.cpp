@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "lab/sweep/measure_asset.h"
+#include "lab/sweep/source_measure.h"
 
 #include <algorithm>
 #include <array>
