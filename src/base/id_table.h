@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/random.h"
+#include "base/vec.h"
 
 namespace meshlode {
 
@@ -18,6 +19,13 @@ namespace meshlode {
 constexpr std::uint64_t hash_word(std::uint64_t hash, std::uint64_t word) {
   hash = (hash ^ word) * kGoldenGamma;
   return hash ^ hash >> 32U;
+}
+
+/// Of a point of a grid.
+inline std::uint64_t hash_point(const Vec3i& point) {
+  std::uint64_t hash = 0;
+  for (int k = 0; k < 3; ++k) hash = hash_word(hash, static_cast<std::uint32_t>(point[k]));
+  return hash;
 }
 
 class IdTable {

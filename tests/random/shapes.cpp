@@ -5,6 +5,7 @@
 #include <iterator>
 #include <map>
 
+#include "lab/samples/cube_grid.h"
 #include "lab/samples/noise.h"
 
 namespace meshlode::test {
@@ -130,16 +131,8 @@ Shape make_double_sheet(Dice& dice, std::uint32_t triangles) {
   const std::size_t half = shape.triangles.size() / 2;
   for (std::size_t t = half; t < shape.triangles.size(); ++t) std::swap(shape.triangles[t][1], shape.triangles[t][2]);
   if (!is_closed) return shape;
-  const auto rim = [&](std::uint32_t a, std::uint32_t b) {
-    shape.quad(sides[0] + b, sides[0] + a, sides[1] + a, sides[1] + b);
-  };
-  const std::uint32_t across = n + 1;
-  for (std::uint32_t i = 0; i < n; ++i) {
-    rim(i, i + 1);
-    rim(n * across + i + 1, n * across + i);
-    rim((i + 1) * across, i * across);
-    rim(i * across + n, (i + 1) * across + n);
-  }
+  lab::for_each_rim_edge(
+      n, [&](std::uint32_t a, std::uint32_t b) { shape.quad(sides[0] + b, sides[0] + a, sides[1] + a, sides[1] + b); });
   return shape;
 }
 

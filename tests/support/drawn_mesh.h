@@ -15,6 +15,7 @@
 #include "builder/simplify/group_places.h"
 #include "builder/simplify/simplify.h"
 #include "support/random.h"
+#include "support/simplify_input.h"
 
 namespace meshlode::test {
 
@@ -88,17 +89,8 @@ inline Vec3i random_point(RandomSource& random, std::uint32_t size) {
   return {x, y, z};
 }
 
-/// Nothing locked, each vertex its own witness, one material, and no attributes.
 inline SimplifyInput as_input(const DrawnMesh& drawn) {
-  SimplifyInput input;
-  input.positions = drawn.points;
-  input.is_locked.assign(drawn.points.size(), 0);
-  for (const Vec3i& p : drawn.points) input.witnesses.push_back({{p}, 1});
-  input.wedge_position = drawn.wedge_position;
-  input.is_wedge_shared.assign(drawn.wedge_position.size(), 0);
-  input.triangles = drawn.triangles;
-  input.triangle_material.assign(drawn.triangles.size(), 0);
-  return input;
+  return as_input(drawn.points, drawn.wedge_position, drawn.triangles);
 }
 
 /// The flat star of the edge (0, 1), all of its triangles counterclockwise; its border are 2 … 9:

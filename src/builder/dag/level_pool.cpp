@@ -71,16 +71,10 @@ BuildPool::BuildPool(PreparedMesh& mesh, const CoarserLevels& coarser)
                             [&](std::size_t p) { witnesses[p].front() = static_cast<std::uint32_t>(p); });
   }
   position_table_.fill(static_cast<std::uint32_t>(positions.size()), kForEachId,
-                       [&](std::uint32_t id) { return hash_position(positions[id]); });
+                       [&](std::uint32_t id) { return hash_point(positions[id]); });
   wedge_table_.fill(static_cast<std::uint32_t>(wedge_position.size()), kForEachId, [&](std::uint32_t id) {
     return hash_wedge(wedge_position[id], wedge_attributes.data() + id * stride_);
   });
-}
-
-std::uint64_t BuildPool::hash_position(const Vec3i& position) {
-  std::uint64_t h = 0;
-  for (int k = 0; k < 3; ++k) h = hash_word(h, static_cast<std::uint32_t>(position[k]));
-  return h;
 }
 
 std::uint64_t BuildPool::hash_wedge(std::uint32_t position, const float* attributes) const {
@@ -98,8 +92,8 @@ bool BuildPool::is_wedge(std::uint32_t wedge, std::uint32_t position, const floa
 std::uint32_t BuildPool::position_id(const Vec3i& position) {
   const auto next = static_cast<std::uint32_t>(positions.size());
   const IdTable::Entry entry = position_table_.find_or_insert(
-      hash_position(position), next, [&](std::uint32_t other) { return positions[other] == position; },
-      [&](std::uint32_t other) { return hash_position(positions[other]); });
+      hash_point(position), next, [&](std::uint32_t other) { return positions[other] == position; },
+      [&](std::uint32_t other) { return hash_point(positions[other]); });
   if (entry.is_new) {
     positions.push_back(position);
     if (has_witnesses_) witnesses.push_back(kNoWitnesses);
@@ -108,8 +102,7 @@ std::uint32_t BuildPool::position_id(const Vec3i& position) {
 }
 
 std::uint32_t BuildPool::find_position(const Vec3i& position) const {
-  return position_table_.find(hash_position(position),
-                              [&](std::uint32_t other) { return positions[other] == position; });
+  return position_table_.find(hash_point(position), [&](std::uint32_t other) { return positions[other] == position; });
 }
 
 bool BuildPool::had_place(const Vec3i& position) const {
@@ -168,7 +161,7 @@ BuildPool::Ids BuildPool::find_known(const SimplifyResult& result) const {
   Ids ids;
   ids.positions.resize(result.positions.size());
   for (std::size_t p = 0; p < ids.positions.size(); ++p) {
-    if (p + kAhead < ids.positions.size()) position_table_.prefetch(hash_position(result.positions[p + kAhead]));
+    if (p + kAhead < ids.positions.size()) position_table_.prefetch(hash_point(result.positions[p + kAhead]));
     ids.positions[p] = find_position(result.positions[p]);
   }
   ids.wedges.resize(result.wedge_position.size());
@@ -214,7 +207,7 @@ void BuildPool::prefetch_wedge(const SimplifyResult& result, const Ids& ids, std
 void BuildPool::insert_new(const SimplifyResult& result, Ids& ids) {
   for (std::size_t p = 0; p < ids.positions.size(); ++p) {
     if (p + kAhead < ids.positions.size() && ids.positions[p + kAhead] == kNoId)
-      position_table_.prefetch(hash_position(result.positions[p + kAhead]));
+      position_table_.prefetch(hash_point(result.positions[p + kAhead]));
     if (ids.positions[p] == kNoId) ids.positions[p] = position_id(result.positions[p]);
     if (has_witnesses_) add_witnesses(ids.positions[p], ids_of(result.witnesses[p]));
   }

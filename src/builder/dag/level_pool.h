@@ -118,7 +118,6 @@ class BuildPool {
   std::uint32_t position_id(const Vec3i& position);
   std::uint32_t wedge_id(std::uint32_t position, const float* attributes);
   [[nodiscard]] bool is_wedge(std::uint32_t wedge, std::uint32_t position, const float* attributes) const;
-  [[nodiscard]] static std::uint64_t hash_position(const Vec3i& position);
   [[nodiscard]] std::uint64_t hash_wedge(std::uint32_t position, const float* attributes) const;
 
   std::size_t stride_;

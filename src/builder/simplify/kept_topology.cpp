@@ -65,9 +65,7 @@ bool keeps_to_itself(const CollapseMesh& mesh, const GroupLocks& locks, const Co
 }
 
 std::size_t HashOfPlace::operator()(const Vec3i& place) const {
-  std::uint64_t h = 0;
-  for (int k = 0; k < 3; ++k) h = hash_word(h, static_cast<std::uint32_t>(place[k]));
-  return static_cast<std::size_t>(h);
+  return static_cast<std::size_t>(hash_point(place));
 }
 
 OwnPlaces::OwnPlaces(const SimplifyInput& input) : input_(input), now_(2 * input.positions.size()) {

@@ -391,7 +391,7 @@ class Quadrics : public od::ModQuadricT<Mesh> {
  public:
   using Handle = od::ModHandleT<Quadrics>;
   using Base = od::ModQuadricT<Mesh>;
-  explicit Quadrics(Mesh& mesh) : Base(mesh) {}
+  using Base::Base;
   float collapse_priority(const Collapse& collapse) override {
     return std::max(0.0F, Base::collapse_priority(collapse));
   }
@@ -402,7 +402,7 @@ class Flips : public od::ModNormalFlippingT<Mesh> {
  public:
   using Handle = od::ModHandleT<Flips>;
   using Base = od::ModNormalFlippingT<Mesh>;
-  explicit Flips(Mesh& mesh) : Base(mesh) {}
+  using Base::Base;
   float collapse_priority(const Collapse& collapse) override {
     return is_relaxed ? static_cast<float>(Base::LEGAL_COLLAPSE) : Base::collapse_priority(collapse);
   }

@@ -34,6 +34,18 @@ void for_each_cell(std::uint32_t n, const Body& body) {
   }
 }
 
+/// The border's edges of n · n cells, points numbered row by row: a to b, all around.
+template <class Body>
+void for_each_rim_edge(std::uint32_t n, const Body& body) {
+  const std::uint32_t row = n + 1;
+  for (std::uint32_t i = 0; i < n; ++i) {
+    body(i, i + 1);
+    body(n * row + i + 1, n * row + i);
+    body((i + 1) * row, i * row);
+    body(i * row + n, (i + 1) * row + n);
+  }
+}
+
 /// Two triangles of a quad given counter-clockwise.
 inline void add_quad(std::vector<std::uint32_t>& indices, std::uint32_t a, std::uint32_t b, std::uint32_t c,
                      std::uint32_t d) {

@@ -14,6 +14,16 @@ namespace meshlode::lab {
   return v / std::sqrt(glm::dot(v, v));
 }
 
+/// A card that a texture fills: from the middle of its foot, `half` of its width to either side and all the way `up`.
+inline void add_card(scene::Primitive& out, const Vec3d& foot, const Vec3d& half, const Vec3d& up,
+                     const Vec3f& normal) {
+  const auto first = static_cast<std::uint32_t>(out.positions.size());
+  out.positions.insert(out.positions.end(), {foot - half, foot + half, foot + half + up, foot - half + up});
+  out.normals.insert(out.normals.end(), 4, normal);
+  out.uvs[0].insert(out.uvs[0].end(), {{0.0F, 1.0F}, {1.0F, 1.0F}, {1.0F, 0.0F}, {0.0F, 0.0F}});
+  add_quad(out.indices, first, first + 1, first + 2, first + 3);
+}
+
 /// Adds flat facets that have vertices and a normal of their own.
 struct FacetBuilder {
   scene::Primitive& out;

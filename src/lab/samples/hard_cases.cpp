@@ -83,14 +83,7 @@ Primitive make_blade(std::uint32_t n, double thickness) {
     add_triangle(out, out.indices[t] + sheet, out.indices[t + 2] + sheet, out.indices[t + 1] + sheet);
   }
   // The rim: every border edge a → b of the top sheet gets a quad down to the bottom sheet.
-  const auto rim = [&](std::uint32_t a, std::uint32_t b) { add_quad(out.indices, b, a, a + sheet, b + sheet); };
-  const std::uint32_t row = n + 1;
-  for (std::uint32_t i = 0; i < n; ++i) {
-    rim(i, i + 1);
-    rim(n * row + i + 1, n * row + i);
-    rim((i + 1) * row, i * row);
-    rim(i * row + n, (i + 1) * row + n);
-  }
+  for_each_rim_edge(n, [&](std::uint32_t a, std::uint32_t b) { add_quad(out.indices, b, a, a + sheet, b + sheet); });
   return out;
 }
 

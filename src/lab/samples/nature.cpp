@@ -150,17 +150,7 @@ Primitive make_foliage(std::uint32_t count, std::uint64_t seed) {
     const double width = random.between(0.15, 0.4), height = random.between(0.4, 1.2);
     const Vec3d side(cos_turns(turn), 0.0, sin_turns(turn));
     const Vec3d up = unit(Vec3d(-side.z * lean, 1.0, side.x * lean));
-    const Vec3d base(x, 0.0, z);
-    const Vec3f normal(unit(glm::cross(side, up)));
-    const auto first = static_cast<std::uint32_t>(out.positions.size());
-    const Vec3d corners[4] = {base - side * width, base + side * width, base + side * width + up * height,
-                              base - side * width + up * height};
-    for (int c = 0; c < 4; ++c) {
-      out.positions.push_back(corners[c]);
-      out.normals.push_back(normal);
-      out.uvs[0].emplace_back(c == 1 || c == 2 ? 1.0F : 0.0F, c < 2 ? 1.0F : 0.0F);
-    }
-    add_quad(out.indices, first, first + 1, first + 2, first + 3);
+    add_card(out, Vec3d(x, 0.0, z), side * width, up * height, Vec3f(unit(glm::cross(side, up))));
   }
   return out;
 }

@@ -105,16 +105,7 @@ Primitive make_tree_leaves(std::uint32_t count, std::uint64_t seed) {
     const double turn = random.unit(), size = random.between(0.07, 0.12);
     const Vec3d other(cos_turns(turn), random.between(-0.5, 0.5), sin_turns(turn));
     const Vec3d side = unit(glm::cross(up, other) + up * 1e-9);
-    const Vec3f normal(unit(glm::cross(side, up)));
-    const auto first = static_cast<std::uint32_t>(out.positions.size());
-    const std::array<Vec3d, 4> corners{base - side * (0.5 * size), base + side * (0.5 * size),
-                                       base + side * (0.5 * size) + up * size, base - side * (0.5 * size) + up * size};
-    for (std::size_t c = 0; c < 4; ++c) {
-      out.positions.push_back(corners[c]);
-      out.normals.push_back(normal);
-      out.uvs[0].emplace_back(c == 1 || c == 2 ? 1.0F : 0.0F, c < 2 ? 1.0F : 0.0F);
-    }
-    add_quad(out.indices, first, first + 1, first + 2, first + 3);
+    add_card(out, base, side * (0.5 * size), up * size, Vec3f(unit(glm::cross(side, up))));
   }
   return out;
 }

@@ -16,28 +16,15 @@
 #include "lab/samples/samples.h"
 #include "support/border_chain.h"
 #include "support/sanitized.h"
+#include "support/simplify_input.h"
 
 namespace meshlode::builder {
 namespace {
 
+using test::as_input;
 using testing_support::add_triangle;
 using testing_support::Chain;
 using testing_support::point;
-
-SimplifyInput as_input(const PreparedMesh& mesh) {
-  SimplifyInput input;
-  input.grid = mesh.grid;
-  input.layout = mesh.layout;
-  input.positions = mesh.positions;
-  input.is_locked.assign(mesh.positions.size(), 0);
-  for (const Vec3i& p : mesh.positions) input.witnesses.push_back({{p}, 1});
-  input.wedge_position = mesh.wedge_position;
-  input.is_wedge_shared.assign(mesh.wedge_position.size(), 0);
-  input.wedge_attributes = mesh.wedge_attributes;
-  input.triangles = mesh.triangles;
-  input.triangle_material = mesh.triangle_material;
-  return input;
-}
 
 PreparedMesh prepare(const scene::Primitive& shape, const AttributeLayout& layout = {}) {
   return *prepare_mesh(lab::as_mesh(shape), layout, {});

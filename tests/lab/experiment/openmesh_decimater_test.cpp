@@ -18,6 +18,7 @@
 #include "lab/samples/samples.h"
 #include "support/border_chain.h"
 #include "support/sanitized.h"
+#include "support/simplify_input.h"
 
 namespace meshlode::lab {
 namespace {
@@ -30,19 +31,7 @@ using testing_support::point;
 using testing_support::Point;
 
 SimplifyInput as_input(const scene::Primitive& shape, const AttributeLayout& layout = {}) {
-  const PreparedMesh mesh = *prepare_mesh(lab::as_mesh(shape), layout, {});
-  SimplifyInput input;
-  input.grid = mesh.grid;
-  input.layout = mesh.layout;
-  input.positions = mesh.positions;
-  input.is_locked.assign(mesh.positions.size(), 0);
-  for (const Vec3i& p : mesh.positions) input.witnesses.push_back({{p}, 1});
-  input.wedge_position = mesh.wedge_position;
-  input.is_wedge_shared.assign(mesh.wedge_position.size(), 0);
-  input.wedge_attributes = mesh.wedge_attributes;
-  input.triangles = mesh.triangles;
-  input.triangle_material = mesh.triangle_material;
-  return input;
+  return test::as_input(*prepare_mesh(lab::as_mesh(shape), layout, {}));
 }
 
 template <class Surface>
