@@ -14,11 +14,10 @@ namespace meshlode::judge {
 namespace {
 
 constexpr std::uint32_t kNone = NearestPoint::kNone;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t kChunk = 256;
 constexpr std::size_t kPiecesAtOnce = 1024;  // of those that are open the farthest, or a quarter
 
-// Where its sharpest corner has a greater sine a triangle's normal is known to 1e-12.
-constexpr double kPlaneSine = 1e-4;
 // Of regula falsi. Most places are found in two; where a surface is flat to the last digits it is all the way to them.
 constexpr int kMostSteps = 40;
 constexpr std::size_t kMostCandidates = 8;  // triangles that a piece may be near to
@@ -30,7 +29,7 @@ struct Piece {
   /// Of each corner: a bit for each candidate that is near enough to it.
   std::array<std::uint8_t, 3> near{};
   std::uint8_t count = 0;
-  double upper = std::numeric_limits<double>::infinity();  ///< of an open piece
+  double upper = kInfinity;  ///< of an open piece
 };
 
 struct Found {
@@ -38,20 +37,37 @@ struct Found {
   Vec3d worst{0.0};
   std::uint64_t splits = 0;
   std::vector<Piece> open;
-  std::vector<NearParts> near;
+
   void meet(double distance, const Vec3d& at) {
     if (distance > lower) {
       lower = distance;
       worst = at;
     }
   }
+  void add(const Found& part) {
+    meet(part.lower, part.worst);
+    splits += part.splits;
+    open.insert(open.end(), part.open.begin(), part.open.end());
+  }
 };
+
+/// The largest number whose root is not above `distance`: what is compared squared is so as distances are. A corner
+/// that was met at a distance is then near enough wherever that is, and each round of a search has something to split.
+double square_of(double distance) {
+  double square = distance * distance;
+  while (std::sqrt(square) > distance) square = std::nextafter(square, 0.0);
+  for (double next = square; square < kInfinity && std::sqrt(next) <= distance;) {
+    square = next;
+    next = std::nextafter(square, kInfinity);
+  }
+  return square;
+}
 
 /// Looks at pieces of one surface, to find whether another is nearer than `known` everywhere.
 class Search {
  public:
   Search(const BracketTarget& b, double known)
-      : b_(b.surface), tree_(b.tree), parts_(b.parts), known_(known), known2_(known * known) {}
+      : b_(b.surface), tree_(b.tree), parts_(b.parts), known_(known), known2_(square_of(known)) {}
 
   /// A triangle with the nearest triangles of its corners.
   Piece piece_of(const std::array<Vec3d, 3>& at, const std::array<std::uint32_t, 3>& nearest) const {
@@ -108,30 +124,13 @@ class Search {
     return distance2_to_triangle(p, b_.positions[t[0]], b_.positions[t[1]], b_.positions[t[2]]);
   }
 
-  /// distance2() <= known2_, for less: most points are over the triangle, or far beside it.
   [[nodiscard]] bool is_near(const Vec3d& p, std::uint32_t k) const {
     const auto& t = b_.triangles[k];
-    const Vec3d a = b_.positions[t[0]] - p, b = b_.positions[t[1]] - p, c = b_.positions[t[2]] - p;
-    const Vec3d ab = b - a, bc = c - b, ca = a - c;
-    const Vec3d n = glm::cross(ab, -ca);
-    const double nn = glm::dot(n, n), sides2 = glm::dot(ab, ab) + glm::dot(ca, ca);
-    if (nn > kPlaneSine * kPlaneSine * sides2 * sides2) {
-      const double limit2 = known2_ * nn, h = glm::dot(a, n);
-      if (h * h > limit2 * (1.0 + 1e-9)) return false;
-      const double u = glm::dot(glm::cross(ab, a), n), v = glm::dot(glm::cross(bc, b), n),
-                   w = glm::dot(glm::cross(ca, c), n);  // beside an edge where positive
-      if (u <= 0.0 && v <= 0.0 && w <= 0.0) return h * h <= limit2;
-      const double far2 = limit2 * (1.0 + 1e-9);
-      if ((u > 0.0 && u * u > far2 * glm::dot(ab, ab)) || (v > 0.0 && v * v > far2 * glm::dot(bc, bc)) ||
-          (w > 0.0 && w * w > far2 * glm::dot(ca, ca))) {
-        return false;
-      }
-    }
-    return distance2_to_triangle(p, b_.positions[t[0]], b_.positions[t[1]], b_.positions[t[2]]) <= known2_;
+    return is_near_triangle(p, b_.positions[t[0]], b_.positions[t[1]], b_.positions[t[2]], known2_);
   }
 
   [[nodiscard]] double upper_of(const Piece& piece) const {
-    double least = std::numeric_limits<double>::infinity();
+    double least = kInfinity;
     for (std::size_t k = 0; k < piece.count; ++k) {
       double most = 0.0;
       for (const Vec3d& p : piece.at) most = std::max(most, distance2(p, piece.candidates[k]));
@@ -299,8 +298,33 @@ std::vector<std::uint32_t> find_nearest(const Surface& a, std::span<const std::u
       parts[chunk].meet(std::sqrt(nearest.distance2), p);
     }
   });
-  for (const Found& part : parts) found.meet(part.lower, part.worst);
+  for (const Found& part : parts) found.add(part);
   return near;
+}
+
+/// Looks at `count` pieces, each with its share of what is left of the budget: what is open of them is left in `found`.
+template <class PieceAt>
+std::vector<NearParts> look_at_all(std::size_t count, const PieceAt& piece_at, const BracketTarget& b, double enough,
+                                   std::uint64_t budget, Found& found) {
+  const std::uint64_t most = budget > found.splits ? 1 + (budget - found.splits) / count : 0;
+  std::vector<Found> parts(chunk_count(count, kChunk));
+  std::vector<NearParts> near(count);
+  parallel_for_each_chunk(count, kChunk, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+    Search search(b, enough);
+    for (std::size_t i = begin; i < end; ++i) near[i] = search.look_at(piece_at(i, search), most, parts[chunk]);
+  });
+  for (const Found& part : parts) found.add(part);
+  return near;
+}
+
+/// Takes the farthest of them.
+std::vector<Piece> take_farthest(std::vector<Piece>& open) {
+  std::stable_sort(open.begin(), open.end(), [](const Piece& p, const Piece& q) { return p.upper > q.upper; });
+  const auto end =
+      open.begin() + static_cast<std::ptrdiff_t>(std::min(open.size(), std::max(kPiecesAtOnce, open.size() / 4)));
+  std::vector<Piece> taken(open.begin(), end);
+  open.erase(open.begin(), end);
+  return taken;
 }
 
 }  // namespace
@@ -317,60 +341,33 @@ Bracket bracket_one_way(const Surface& a, std::span<const std::uint32_t> triangl
                         const BracketOptions& options) {
   Bracket out;
   Found found;
-  const std::vector<std::uint32_t> near = find_nearest(a, triangles, b.tree, found);
+  const std::vector<std::uint32_t> nearest = find_nearest(a, triangles, b.tree, found);
   if (triangles.empty()) {
     out.upper = options.enough;
     return out;
   }
-  const auto look = [&](std::size_t count, double enough, auto&& piece_at) {
-    std::vector<Found> parts(chunk_count(count, kChunk));
-    std::vector<NearParts> near_parts(count);
-    // Each has its share of what is left of the budget.
-    const std::uint64_t most = options.budget > found.splits ? 1 + (options.budget - found.splits) / count : 0;
-    parallel_for_each_chunk(count, kChunk, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
-      Search search(b, enough);
-      for (std::size_t i = begin; i < end; ++i) {
-        near_parts[i] = search.look_at(piece_at(i, search), most, parts[chunk]);
-      }
-    });
-    std::vector<Piece> open;
-    for (Found& part : parts) {
-      found.meet(part.lower, part.worst);
-      found.splits += part.splits;
-      open.insert(open.end(), part.open.begin(), part.open.end());
-    }
-    if (out.near.empty()) out.near = std::move(near_parts);
-    return open;
-  };
-  std::vector<Piece> open = look(triangles.size(), options.enough, [&](std::size_t i, const Search& search) {
+  const auto triangle_at = [&](std::size_t i, const Search& search) {
     const auto& [p, q, r] = a.triangles[triangles[i]];
-    return search.piece_of({a.positions[p], a.positions[q], a.positions[r]}, {near[p], near[q], near[r]});
-  });
+    return search.piece_of({a.positions[p], a.positions[q], a.positions[r]}, {nearest[p], nearest[q], nearest[r]});
+  };
   double enough = options.enough;
+  out.near = look_at_all(triangles.size(), triangle_at, b, enough, options.budget, found);
   while (true) {
     if (found.lower > options.enough) enough = found.lower * (1.0 + options.tolerance);
-    open.erase(std::remove_if(open.begin(), open.end(), [&](const Piece& p) { return p.upper <= enough; }), open.end());
-    if (open.empty() || found.splits >= options.budget) break;
-    // The farthest first.
-    std::stable_sort(open.begin(), open.end(), [](const Piece& p, const Piece& q) { return p.upper > q.upper; });
-    const std::size_t count = std::min(open.size(), std::max(kPiecesAtOnce, open.size() / 4));
-    std::vector<Piece> taken(open.begin(), open.begin() + static_cast<std::ptrdiff_t>(count));
-    open.erase(open.begin(), open.begin() + static_cast<std::ptrdiff_t>(count));
-    const std::uint64_t splits = found.splits;
-    const double lower = found.lower;
-    const std::vector<Piece> left = look(count, enough, [&](std::size_t i, const Search& search) {
+    std::erase_if(found.open, [&](const Piece& p) { return p.upper <= enough; });
+    if (found.open.empty() || found.splits >= options.budget) break;
+    std::vector<Piece> taken = take_farthest(found.open);
+    const auto taken_at = [&](std::size_t i, const Search& search) {
       search.renew(taken[i]);
       return taken[i];
-    });
-    open.insert(open.end(), left.begin(), left.end());
-    // Rounding alone tells these from what is near enough: they stay undecided.
-    if (found.splits == splits && found.lower == lower && left.size() >= count) break;
+    };
+    (void)look_at_all(taken.size(), taken_at, b, enough, options.budget, found);
   }
   out.lower = std::max(0.0, found.lower);
   out.worst = found.worst;
   out.upper = std::max(out.lower, enough);
-  for (const Piece& piece : open) out.upper = std::max(out.upper, piece.upper);
-  out.undecided = open.size();
+  for (const Piece& piece : found.open) out.upper = std::max(out.upper, piece.upper);
+  out.undecided = found.open.size();
   out.splits = found.splits;
   return out;
 }

@@ -17,6 +17,14 @@ constexpr std::uint32_t kLeafSize = 4;
 // its inside is this close to an edge, relative to its length.
 constexpr double kNeedleSine = 1e-8;
 
+// Where its sharpest corner has a greater sine a triangle's normal is known to 1e-12.
+constexpr double kPlaneSine = 1e-4;
+/// A squared distance from a plane, or in it from an edge, that is beyond `limit2` whatever rounding says: of a point
+/// that is this far from a corner.
+double surely_beyond(double limit2, const Vec3d& corner) {
+  return (1.0 + 1e-6) * limit2 + 1e-16 * glm::dot(corner, corner);
+}
+
 // Squared distance from the origin to the segment a-b.
 double distance2_to_segment(const Vec3d& a, const Vec3d& b) {
   const Vec3d d = b - a;
@@ -46,10 +54,27 @@ double distance2_to_triangle(const Vec3d& p, const Vec3d& corner_a, const Vec3d&
   return std::min(distance2_to_segment(a, b), std::min(distance2_to_segment(b, c), distance2_to_segment(c, a)));
 }
 
-namespace {
+bool is_near_triangle(const Vec3d& p, const Vec3d& corner_a, const Vec3d& corner_b, const Vec3d& corner_c,
+                      double limit2) {
+  const Vec3d a = corner_a - p, b = corner_b - p, c = corner_c - p;
+  const Vec3d ab = b - a, bc = c - b, ca = a - c;
+  const Vec3d n = glm::cross(ab, -ca);
+  const double nn = glm::dot(n, n), sides2 = glm::dot(ab, ab) + glm::dot(ca, ca);
+  if (nn > kPlaneSine * kPlaneSine * sides2 * sides2) {
+    const double h = glm::dot(a, n), far2 = nn * surely_beyond(limit2, a);
+    if (h * h > far2) return false;
+    const double u = glm::dot(glm::cross(ab, a), n), v = glm::dot(glm::cross(bc, b), n),
+                 w = glm::dot(glm::cross(ca, c), n);  // beside an edge where positive
+    if (u <= 0.0 && v <= 0.0 && w <= 0.0) return h * h / nn <= limit2;
+    if ((u > 0.0 && u * u > far2 * glm::dot(ab, ab)) || (v > 0.0 && v * v > far2 * glm::dot(bc, bc)) ||
+        (w > 0.0 && w * w > far2 * glm::dot(ca, ca))) {
+      return false;
+    }
+  }
+  return distance2_to_triangle(p, corner_a, corner_b, corner_c) <= limit2;
+}
 
-// Where its sharpest corner has a greater sine a triangle's normal is known to 1e-12.
-constexpr double kPlaneSine = 1e-4;
+namespace {
 
 /// Whether the plane of a triangle is farther from a point than this, by more than rounding may say: then the triangle
 /// is. Where large triangles cross their boxes hold every point, and nearly all that are asked are dismissed so, for
@@ -60,8 +85,7 @@ bool has_far_plane(const Vec3d& p, const Vec3d& corner_a, const Vec3d& corner_b,
   const Vec3d n = glm::cross(ab, ac);
   const double nn = glm::dot(n, n), h = glm::dot(a, n);
   const double sides2 = glm::dot(ab, ab) + glm::dot(ac, ac);  // at least half the square of the longest
-  return nn > kPlaneSine * kPlaneSine * sides2 * sides2 &&
-         h * h > nn * ((1.0 + 1e-6) * distance2 + 1e-16 * glm::dot(a, a));
+  return nn > kPlaneSine * kPlaneSine * sides2 * sides2 && h * h > nn * surely_beyond(distance2, a);
 }
 
 // A box may have this many times the area of its triangle before it is cut; an equilateral triangle has up to 3.5.

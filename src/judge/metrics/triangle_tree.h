@@ -21,6 +21,9 @@ struct NearestPoint {
 /// Squared distance from a point to a triangle, which may be a needle, a segment or a point.
 [[nodiscard]] double distance2_to_triangle(const Vec3d& p, const Vec3d& a, const Vec3d& b, const Vec3d& c);
 
+/// Whether that is `limit2` at most, for less: most that are asked are over the triangle, or far beside it.
+[[nodiscard]] bool is_near_triangle(const Vec3d& p, const Vec3d& a, const Vec3d& b, const Vec3d& c, double limit2);
+
 /// A bounding volume hierarchy with a fixed shape (median splits along the longest axis of the centres). A triangle
 /// that fills little of its box, a spoke of a wheel say, stands in several leaves, in each for a piece of its length:
 /// else every point near the hub would lie in the boxes of a quarter of the spokes. Distances are exact; boxes are

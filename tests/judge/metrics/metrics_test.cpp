@@ -57,6 +57,28 @@ TEST(Metrics, DistanceToATriangleHasItsClosedFormOverFaceEdgeAndCorner) {
   EXPECT_EQ(distance2_to_triangle({1, 1, 0}, a, b, c), 0.0);
 }
 
+// Whatever rounds: a point that was measured is near where its distance says so.
+TEST(Metrics, IsNearATriangleExactlyWhereItsDistanceSaysSo) {
+  RandomSource random(53);
+  std::size_t over = 0;
+  for (int i = 0; i < 60000; ++i) {
+    const Vec3d offset = random.in_cube(random.log_between(1e-3, 1e6));
+    const Vec3d a = offset + random.in_cube(1.0), b = offset + random.in_cube(1.0);
+    const Vec3d c = i % 2 == 0
+                        ? offset + random.in_cube(1.0)
+                        : a + (b - a) * random.between(0.0, 1.0) + random.in_cube(random.log_between(1e-6, 1e-1));
+    const Vec3d on = (a + b * random.between(0.0, 2.0) + c * random.between(0.0, 2.0)) * 0.25 + a * 0.25;
+    const Vec3d p = on + random.in_cube(random.log_between(1e-13, 1.0));
+    const double d2 = distance2_to_triangle(p, a, b, c);
+    over += d2 > 0.0 ? 1 : 0;
+    EXPECT_TRUE(is_near_triangle(p, a, b, c, d2)) << i;
+    EXPECT_TRUE(is_near_triangle(p, a, b, c, d2 * (1.0 + 1e-7) + 1e-300)) << i;
+    EXPECT_FALSE(is_near_triangle(p, a, b, c, d2 - std::max(d2 * 1e-15, 1e-300))) << i;
+    EXPECT_FALSE(is_near_triangle(p, a, b, c, d2 * 0.9 - 1e-300)) << i;
+  }
+  EXPECT_GT(over, 50000U);
+}
+
 TEST(Metrics, DistanceToNeedlesSegmentsAndPointsIsThatToWhatTheyAre) {
   EXPECT_DOUBLE_EQ(distance2_to_triangle({1, 2, 0}, {0, 0, 0}, {2, 0, 0}, {4, 0, 0}), 4.0);
   EXPECT_DOUBLE_EQ(distance2_to_triangle({1, 2, 2}, {1, 0, 2}, {1, 0, 2}, {1, 0, 2}), 4.0);

@@ -70,6 +70,40 @@ Surface make_box(double half) {
   return s;
 }
 
+Surface make_soup(RandomSource& random, std::uint32_t count, const Vec3d& offset) {
+  std::vector<std::array<Vec3d, 3>> out;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const Vec3d at = offset + random.in_cube(1.0);
+    const double edge = random.log_between(1e-2, 1.0);
+    std::array<Vec3d, 3> t;
+    for (Vec3d& p : t) p = at + random.in_cube(edge);
+    if (i % 5 == 1) t[2] = t[0] + (t[1] - t[0]) * 0.3;                                // a segment
+    if (i % 5 == 2) t[2] = t[0] + (t[1] - t[0]) * 0.6 + random.in_cube(1e-7 * edge);  // a needle
+    if (i % 25 == 3) t[1] = t[2] = t[0];                                              // a point
+    out.push_back(t);
+  }
+  return triangles_of(out);
+}
+
+/// The largest of the distances at a grid of points on each triangle.
+double sampled(const Surface& a, const Surface& b, std::uint32_t n) {
+  double most = 0.0;
+  for (const auto& t : a.triangles) {
+    for (std::uint32_t i = 0; i <= n; ++i) {
+      for (std::uint32_t j = 0; i + j <= n; ++j) {
+        const Vec3d p = a.positions[t[0]] + (a.positions[t[1]] - a.positions[t[0]]) * (double(i) / n) +
+                        (a.positions[t[2]] - a.positions[t[0]]) * (double(j) / n);
+        double least = HUGE_VAL;
+        for (const auto& k : b.triangles) {
+          least = std::min(least, distance2_to_triangle(p, b.positions[k[0]], b.positions[k[1]], b.positions[k[2]]));
+        }
+        most = std::max(most, std::sqrt(least));
+      }
+    }
+  }
+  return most;
+}
+
 void expect_truth(const Bracket& found, double truth, double rounding = 1e-9) {
   EXPECT_LE(found.lower, truth + rounding);
   EXPECT_GE(found.upper, truth - rounding);
@@ -131,6 +165,29 @@ TEST(SurfaceBracket, StopsAtWhatIsEnoughAndSaysNothingOfWhatIsBelow) {
   EXPECT_LT(found.splits, 100U);
 }
 
+// A corner at a distance whose square is not that of its root: near enough as a distance, and not as a square.
+TEST(SurfaceBracket, GoesOnWhereACornerIsExactlyAsFarAsIsEnough) {
+  ASSERT_LT(std::sqrt(3.0) * std::sqrt(3.0), 3.0);
+  const Vec3d p{1, 1, 1}, q{1, 1, 101}, r{1, 101, 1};
+  const Surface piece = triangles_of({{p, q, r}});
+  const Surface target =
+      triangles_of({{Vec3d{0, 0, 0}, Vec3d{-9, 0, 0}, Vec3d{0, -9, 0}}, {q, r, Vec3d{101, 101, 101}}});
+  const Bracket found = bracket(piece, target, {.enough = std::sqrt(3.0), .budget = 1000});
+  EXPECT_EQ(found.undecided, 0U);
+  EXPECT_GE(found.lower, sampled(piece, target, 100) * 0.998);
+  EXPECT_LE(found.upper, found.lower * 1.003);
+
+  RandomSource random(13);
+  for (int i = 0; i < 300; ++i) {
+    const Surface a = make_soup(random, 3, Vec3d(0.0)), b = make_soup(random, 7, Vec3d(0.0));
+    const TriangleTree tree(b);
+    for (const Vec3d& corner : a.positions) {
+      const double enough = std::sqrt(tree.nearest(corner).distance2);
+      EXPECT_EQ(bracket(a, b, {.enough = enough, .budget = 100000}).undecided, 0U) << i;
+    }
+  }
+}
+
 TEST(SurfaceBracket, SaysWhatTheBudgetLeftUndecided) {
   const Surface sphere = make_sphere(40), box = make_box(1.0 / std::sqrt(3.0));
   const Bracket none = bracket(box, sphere, {.enough = 1e-9, .budget = 0});
@@ -149,40 +206,6 @@ TEST(SurfaceBracket, FindsThePeaksThatNoSampleMet) {
     EXPECT_LE(found.upper, found.lower * 1.003);
     EXPECT_EQ(found.undecided, 0U);
   }
-}
-
-Surface make_soup(RandomSource& random, std::uint32_t count, const Vec3d& offset) {
-  std::vector<std::array<Vec3d, 3>> out;
-  for (std::uint32_t i = 0; i < count; ++i) {
-    const Vec3d at = offset + random.in_cube(1.0);
-    const double edge = random.log_between(1e-2, 1.0);
-    std::array<Vec3d, 3> t;
-    for (Vec3d& p : t) p = at + random.in_cube(edge);
-    if (i % 5 == 1) t[2] = t[0] + (t[1] - t[0]) * 0.3;                                // a segment
-    if (i % 5 == 2) t[2] = t[0] + (t[1] - t[0]) * 0.6 + random.in_cube(1e-7 * edge);  // a needle
-    if (i % 25 == 3) t[1] = t[2] = t[0];                                              // a point
-    out.push_back(t);
-  }
-  return triangles_of(out);
-}
-
-/// The largest of the distances at a grid of points on each triangle.
-double sampled(const Surface& a, const Surface& b, std::uint32_t n) {
-  double most = 0.0;
-  for (const auto& t : a.triangles) {
-    for (std::uint32_t i = 0; i <= n; ++i) {
-      for (std::uint32_t j = 0; i + j <= n; ++j) {
-        const Vec3d p = a.positions[t[0]] + (a.positions[t[1]] - a.positions[t[0]]) * (double(i) / n) +
-                        (a.positions[t[2]] - a.positions[t[0]]) * (double(j) / n);
-        double least = HUGE_VAL;
-        for (const auto& k : b.triangles) {
-          least = std::min(least, distance2_to_triangle(p, b.positions[k[0]], b.positions[k[1]], b.positions[k[2]]));
-        }
-        most = std::max(most, std::sqrt(least));
-      }
-    }
-  }
-  return most;
 }
 
 TEST(SurfaceBracket, HoldsDenseSamplesOfSoupsAtAnyOffset) {
