@@ -126,6 +126,18 @@ TEST(SurfaceBracket, FindsTheMiddleOfAGapUnderATriangle) {
   expect_truth(bracket(across, triangles_of(sheets)), 0.125);
 }
 
+// Each edge of the triangle lies along a triangle of its own, and the middle beside none. Of a long one the middle of
+// its corners is not what is farthest: that lies towards the short edge.
+TEST(SurfaceBracket, FindsTheMiddleOfAFrame) {
+  const std::array<Vec3d, 3> corner{Vec3d{-0.5, 0, 0}, Vec3d{0.5, 0, 0}, Vec3d{0, 6, 0}};
+  const double side = std::hypot(6.0, 0.5), inradius = 6.0 / (1.0 + 2.0 * side);
+  for (std::size_t first = 0; first < 3; ++first) {
+    const Vec3d a = corner[first], b = corner[(first + 1) % 3], c = corner[(first + 2) % 3], out{0, 2, 0};
+    const Surface frame = triangles_of({{a, b, a + b - out}, {b, c, b + c - out}, {c, a, c + a - out}});
+    expect_truth(bracket(triangles_of({{a, b, c}}), frame), inradius);
+  }
+}
+
 TEST(SurfaceBracket, FindsTheLineBetweenTwoSlopes) {
   // A plane at height 1 over a valley: farthest over its bottom, where two triangles are as near.
   std::vector<std::array<Vec3d, 3>> valley, plane;
@@ -196,6 +208,14 @@ TEST(SurfaceBracket, SaysWhatTheBudgetLeftUndecided) {
   const Bracket all = bracket(box, sphere);
   EXPECT_LE(none.lower, all.upper);
   EXPECT_GE(none.upper, all.lower);
+  // Each corner is over a point of its own: no point of the piece is farther than a corner is from another's.
+  const Vec3d p{0, 0, 1}, q{0.3, 0, 1}, r{0.15, std::sqrt(0.0675), 1}, down{0, 0, 1};
+  const Surface points =
+      triangles_of({{p - down, p - down, p - down}, {q - down, q - down, q - down}, {r - down, r - down, r - down}});
+  const Bracket over = bracket(triangles_of({{p, q, r}}), points, {.enough = 1e-9, .budget = 0});
+  EXPECT_EQ(over.undecided, 1U);
+  EXPECT_DOUBLE_EQ(over.lower, 1.0);
+  EXPECT_NEAR(over.upper, std::hypot(1.0, 0.3), 1e-12);
 }
 
 TEST(SurfaceBracket, FindsThePeaksThatNoSampleMet) {
