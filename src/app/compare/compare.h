@@ -49,7 +49,7 @@ struct EntryPair {
   std::uint32_t old_index = 0, new_index = 0;
 };
 
-/// Errors of different tiers are other things: a proven bound, the largest of samples, a guess by quadrics. Which is
+/// Errors of different tiers are other things: a proven bound, the largest distance found, a guess by quadrics. Which is
 /// larger says nothing about which asset is more accurate.
 struct TierChange {
   format::ErrorTier before{}, after{};
