@@ -79,6 +79,20 @@ std::optional<Built> build(std::optional<scene::Scene> scene) {
   return Built{std::move(*scene), std::move(*asset)};
 }
 
+/// Of a scene with one mesh, under a seed of the partitioner.
+double stored_per_source(const scene::Scene& scene, std::uint32_t seed) {
+  builder::PipelineOptions options;
+  options.partition_seed = seed;
+  options.error_tier = format::ErrorTier::kQem;  // no triangle depends on errors
+  builder::PipelineReport report;
+  const Result<std::vector<std::uint8_t>> bytes = builder::build_lode(scene, options, {}, report);
+  const Result<run::Asset> asset = bytes ? run::Asset::from_bytes(*bytes) : Result<run::Asset>(bytes.error());
+  if (!asset) return kNoLimit;
+  std::uint64_t stored = 0;
+  for (const format::ClusterRecord& cluster : asset->clusters()) stored += cluster.triangles_less_1 + 1U;
+  return static_cast<double>(stored) / static_cast<double>(asset->meshes()[0].source_triangles);
+}
+
 /// From the tables alone, which `expect_nothing_found` has to vouch for.
 void expect_dag_within(const run::Asset& asset, const Limits& limits) {
   ASSERT_EQ(asset.meshes().size(), 1U);
@@ -210,8 +224,14 @@ TEST(Models, DragonsDagKeepsItsLimitsAndValidateAndVerifyFindNothing) {
 
 TEST(Models, BunnyOfThreeMaterialsHasOneRootNoStuckGroupAndNoFindings) {
   MESHLODE_NEEDS_MODEL("bunny-three-materials.glb")
-  // 2.021: one level more than the bunny of one material has, of 112 triangles.
-  judge(build(import_model("bunny-three-materials.glb")), {.stored_per_source = 2.03});
+  std::optional<scene::Scene> scene = import_model("bunny-three-materials.glb");
+  ASSERT_TRUE(scene);
+  // Whether one cluster more or less is left at the top is luck of the partition, which is worth 0.01: so the mean of
+  // five.
+  double stored = 0.0;
+  for (std::uint32_t seed = 1; seed <= 5; ++seed) stored += stored_per_source(*scene, seed) / 5.0;
+  EXPECT_LE(stored, Limits().stored_per_source);
+  judge(build(std::move(scene)), {.stored_per_source = kNoLimit});
 }
 
 TEST(Models, FacetedBunnyHasOneRootNoStuckGroupAndNoFindings) {

@@ -49,8 +49,8 @@ struct EntryPair {
   std::uint32_t old_index = 0, new_index = 0;
 };
 
-/// Errors of different tiers are other things: a proven bound, the largest of samples, a guess by quadrics. Which is
-/// larger says nothing about which asset is more accurate.
+/// Errors of different tiers are other things: a proven bound, the largest distance found, a guess by quadrics. Which
+/// is larger says nothing about which asset is more accurate.
 struct TierChange {
   format::ErrorTier before{}, after{};
   [[nodiscard]] bool is_comparable() const { return before == after; }

@@ -168,7 +168,7 @@ Result<ScenePlan> plan_scene(const scene::Scene& scene, const builder::PipelineO
     if (aggregate.reason.empty()) continue;
     plan.features.push_back(
         {builder::mesh_label(scene.meshes[i], i) + ": aggregate", aggregate.is_aggregate,
-         aggregate.is_aggregate ? "thinned out by what they cover: " + aggregate.reason : aggregate.reason});
+         aggregate.is_aggregate ? "thinned out by coverage: " + aggregate.reason : aggregate.reason});
   }
   for (builder::PlanDecision& decision : builder::unknown_names(scene, options))
     plan.features.push_back(std::move(decision));

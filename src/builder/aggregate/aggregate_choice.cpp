@@ -29,8 +29,8 @@ std::uint32_t count_materials(const scene::SourceMesh& mesh) {
   return count;
 }
 
-std::string describe(std::uint64_t pieces, std::uint64_t largest) {
-  return std::to_string(pieces) + " pieces, the largest of " + std::to_string(largest) + " triangles";
+std::string describe(std::uint64_t pieces, std::uint64_t largest, const std::string& names = {}) {
+  return std::to_string(pieces) + " pieces" + names + ", at most " + std::to_string(largest) + " triangles each";
 }
 
 /// Pieces together, and whether they are many small ones.
@@ -116,9 +116,10 @@ AggregateDecision decide_by(const scene::SourceMesh& mesh, const Pieces& all, st
     if (is_of[m] == 0 || m >= materials.size() || materials[m].name.empty()) continue;
     names += (names.empty() ? " of '" : ", '") + materials[m].name + "'";
   }
+  const std::size_t others = all.pieces.size() - count;
   return {true,
-          describe(count, largest) + names + ", a mesh of their own; the other " +
-              std::to_string(all.pieces.size() - count) + " go by distances",
+          describe(count, largest, names) + ", become a mesh of their own; " + std::to_string(others) +
+              (others == 1 ? " other piece is" : " other pieces are") + " simplified by distance",
           std::move(most)};
 }
 

@@ -5,6 +5,8 @@
 #include <array>
 #include <vector>
 
+#include <meshlode/format.h>
+
 #include "builder/deviation/attribute_deviation.h"
 
 namespace meshlode::builder {
@@ -37,7 +39,9 @@ void measure_group_attributes(const SourceTree& source, const PreparedMesh& mesh
       measure_attributes(source, {dag.vertex_attributes, form.vertices_of_source}, {positions, triangles},
                          {dag.vertex_attributes, vertices}, mesh.layout, near);
   group.normal_deviation = std::max(group.normal_deviation, found.normal);
-  group.uv_deviation = std::max(group.uv_deviation, found.uv);
+  // Of texture coordinates as large as floats it may be beyond them, where the format says that nothing was measured.
+  constexpr double kMost = 0.999 * double{format::kInfiniteError};
+  group.uv_deviation = std::max(group.uv_deviation, std::min(found.uv, kMost));
 }
 
 }  // namespace meshlode::builder

@@ -22,6 +22,7 @@ std::vector<double> spread_thresholds(std::span<const format::GroupRecord> group
   bool any_zero = false;
   std::vector<double> thresholds;
   for (const format::GroupRecord& group : groups) {
+    if ((group.flags & format::kGroupAggregate) != 0) continue;  // a pixel's size, no distance
     if (count == kAllCuts && group.error < format::kInfiniteError) thresholds.push_back(group.error);
     if (group.error == 0.0F) any_zero = true;
     if (group.error >= format::kInfiniteError || !(group.error > 0.0F)) continue;
@@ -163,18 +164,43 @@ class Brackets {
   std::vector<std::uint8_t> is_near_;  ///< of each cluster of the mesh
 };
 
+/// Clusters that no aggregate has or made. Of assets of before parts were meshes these are a trunk.
+std::vector<ClusterId> clusters_of_others(const run::Asset& asset, const std::vector<ClusterId>& clusters) {
+  const std::vector<ClusterId> aggregates = clusters_of_aggregates(asset, clusters);
+  std::vector<ClusterId> others;
+  std::size_t next = 0;  // both are in the same order
+  for (const ClusterId cluster : clusters) {
+    if (next < aggregates.size() && aggregates[next] == cluster) {
+      ++next;
+    } else {
+      others.push_back(cluster);
+    }
+  }
+  return others;
+}
+
 }  // namespace
 
 Result<std::vector<CutBracket>> bracket_cuts(const run::Asset& asset, MeshId mesh, const scene::SourceMesh& source,
                                              std::uint32_t cuts, std::uint32_t budget) {
   const format::MeshRecord& record = asset.meshes()[mesh.value];
   std::vector<CutBracket> out;
-  Brackets brackets(asset, mesh, surface_of_source(source), budget);
-  const double rounding = position_rounding(record);
+  // Which triangles of the source the others of a mixed mesh are the source does not say; level 0 does, but for the
+  // grid.
+  const bool is_mixed = has_aggregates(asset, mesh);
+  const auto drawn_at = [&](double threshold) {
+    std::vector<ClusterId> clusters = run::select_uniform(asset, mesh, threshold).clusters;
+    return is_mixed ? clusters_of_others(asset, clusters) : clusters;
+  };
+  Result<Surface> truth = is_mixed ? surface_of_clusters(asset, mesh, drawn_at(-1.0)) : surface_of_source(source);
+  if (!truth) return truth.error();
+  if (is_mixed && truth->triangles.empty()) return out;
+  Brackets brackets(asset, mesh, std::move(*truth), budget);
+  const double rounding = position_rounding(record) + (is_mixed ? double{record.level0_deviation} : 0.0);
   std::vector<ClusterId> previous;
   for (const double threshold :
        spread_thresholds(asset.groups().subspan(record.first_group, record.group_count), cuts)) {
-    std::vector<ClusterId> clusters = run::select_uniform(asset, mesh, threshold).clusters;
+    std::vector<ClusterId> clusters = drawn_at(threshold);
     if (clusters == previous) continue;
     CutBracket cut;
     cut.mesh = mesh;
@@ -194,7 +220,7 @@ std::vector<CutBracket> check_deviations(const run::Asset& asset, const scene::S
   std::vector<CutBracket> out;
   for (std::uint32_t m = 0; m < std::min(asset.meshes().size(), source.meshes.size()); ++m) {
     const format::ErrorTier tier = asset.meshes()[m].error_tier;
-    if (tier == format::ErrorTier::kQem || has_aggregates(asset, MeshId(m))) continue;
+    if (tier == format::ErrorTier::kQem) continue;
     const double limit = tier == format::ErrorTier::kCertified ? 1.0 : 1.0 + kMeasuredShortfall;
     const auto brackets = bracket_cuts(asset, MeshId(m), source.meshes[m], cuts, budget);
     if (!brackets) {

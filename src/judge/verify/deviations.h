@@ -67,8 +67,8 @@ struct CutBracket {
                                                            const scene::SourceMesh& source, std::uint32_t cuts,
                                                            std::uint32_t budget);
 
-/// bracket_cuts() of every mesh whose tier promises something, but none with an aggregate. A `measured` cut fails where
-/// more than 1 + kMeasuredShortfall is met, a `certified` one above 1.
+/// bracket_cuts() of every mesh whose tier promises something; of one with an aggregate what is none. A `measured` cut
+/// fails where more than 1 + kMeasuredShortfall is met, a `certified` one above 1.
 [[nodiscard]] std::vector<CutBracket> check_deviations(const run::Asset& asset, const scene::Scene& source,
                                                        std::uint32_t cuts, std::uint32_t budget, RuleLog& log);
 

@@ -66,6 +66,19 @@ TEST(Measure, ChangesErrorsAlone) {
   }
 }
 
+// That nothing was measured is said of all groups of a mesh or of none (L312).
+TEST(Measure, TextureCoordinatesAsLargeAsFloatsHaveAFiniteDeviation) {
+  scene::Primitive shape = lab::make_rock(12);
+  for (std::size_t v = 0; v < shape.uvs[0].size(); ++v) shape.uvs[0][v].x = v % 2 == 0 ? 3e38F : -3e38F;
+  const LodDag dag = measured(build(shape), ErrorTier::kMeasured);
+  double largest = 0.0;
+  for (const DagGroup& group : dag.groups) {
+    if (!group.is_terminal) largest = std::max(largest, group.uv_deviation);
+  }
+  EXPECT_GT(largest, 1e38);
+  EXPECT_LT(largest, double{format::kInfiniteError});
+}
+
 TEST(Measure, SameForAnyThreadCount) {
   const Built built = build(lab::make_rock(20));
   for (const ErrorTier tier : {ErrorTier::kMeasured, ErrorTier::kCertified}) {

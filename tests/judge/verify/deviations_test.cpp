@@ -157,6 +157,26 @@ TEST_P(StoredErrors, AreJudgedAlikeInAllCutsAndInEachAlone) {
   }
 }
 
+// Assets of before parts were meshes have a trunk and its leaves in one mesh: the trunk is judged all the same.
+TEST_P(StoredErrors, OfOtherGroupsAreJudgedBesideAnAggregates) {
+  const Built built = build_rock(GetParam(), 40);
+  AssetEdit edit(built.bytes);
+  scale_errors(edit, 0.25F);  // what is proven may be twice what is
+  const auto groups = edit.groups();
+  for (auto g = static_cast<std::uint32_t>(groups.size()); g-- > 0;) {
+    if ((groups[g].flags & format::kGroupTerminal) != 0) continue;
+    edit.group(g, [](auto& group) { group.flags |= format::kGroupAggregate; });  // the finest
+    break;
+  }
+  edit.header([](auto& header) { header.version = format::kVersion; });
+  edit.seal();
+  const Result<run::Asset> asset = run::Asset::from_vector(edit.bytes());
+  ASSERT_TRUE(asset.ok()) << asset.error().message();
+  RuleLog log;
+  EXPECT_GT(check_deviations(*asset, built.scene, kAllCuts, kDeviationBudget, log).size(), 5U);
+  EXPECT_GT(log.count_of(Rule::kV206), 5U);
+}
+
 TEST_P(StoredErrors, AreAtLeastTheDeviationTimesTheMarginOfTheSettings) {
   const Built built = build_rock(GetParam());
   const double margin = GetParam() == format::ErrorTier::kMeasured ? builder::kMeasuredMargin : 1.0;
