@@ -8,6 +8,35 @@
 
 namespace meshlode::cli {
 
+namespace {
+
+/// Written once, before any thread is started.
+enum class ColorChoice : std::uint8_t { kAuto, kAlways, kNever };
+ColorChoice color_choice = ColorChoice::kAuto;
+
+bool has_color(Stream stream) {
+  if (color_choice != ColorChoice::kAuto) return color_choice == ColorChoice::kAlways;
+  const char* const no_color = std::getenv("NO_COLOR");  // https://no-color.org
+  if (no_color != nullptr && *no_color != '\0') return false;
+  const char* const terminal = std::getenv("TERM");
+  if (terminal == nullptr || std::string_view(terminal) == "dumb") return false;
+  return ::isatty(stream == Stream::kOut ? STDOUT_FILENO : STDERR_FILENO) == 1;
+}
+
+constexpr const char* kCodes[] = {"\033[31m", "\033[32m", "\033[33m", "\033[1m", "\033[2m"};  ///< by Color
+
+}  // namespace
+
+void use_color(std::string_view choice) {
+  color_choice = choice == "always"  ? ColorChoice::kAlways
+                 : choice == "never" ? ColorChoice::kNever
+                                     : ColorChoice::kAuto;
+}
+
+std::string colored(Stream stream, Color color, const std::string& text) {
+  return has_color(stream) ? kCodes[static_cast<std::size_t>(color)] + text + "\033[0m" : text;
+}
+
 bool is_unicode_terminal() {
   if (::isatty(STDOUT_FILENO) != 1) return false;
   // Asked of the environment: setlocale() would change how numbers are printed.

@@ -72,15 +72,18 @@ int run_doctor(const Verb& verb, std::span<char* const> args) {
   scene::ImportOptions options;
   OutputOptions output;
   OptionParser parser(verb);
-  parser.add_positional("file", path, "a .gltf, .glb, .ply, .obj or .stl scene, or a .lode asset");
-  parser.add_value("--fail-on", fail_on,
-                   "exit with 6 where one of these is found: ids, high, medium (and worse) or any, between commas");
-  parser.add_value("--scene", options.scene, "glTF: the name or index of the scene to examine, or all");
-  add_allow_outside_option(parser, allow_outside);
-  parser.add_flag("--linear-colors", options.linear_colors,
-                  "colour levels of PLY and STL are taken as linear, as build --linear-colors does");
-  add_max_decoded_option(parser, max_decoded);
+  parser.add_positional("FILE", path, "a .gltf, .glb, .ply, .obj or .stl scene, or a .lode asset");
+  parser.group("Output");
   add_output_options(parser, output);
+  parser.add_value("--fail-on FAULTS", fail_on,
+                   "exit with 6 if one of these is found: fault ids, high, medium (and worse) or any, comma-separated "
+                   "(default: none)");
+  parser.group("Input");
+  parser.add_value("--scene NAME|INDEX|all", options.scene, "which scene of a glTF to examine (default: the file's)");
+  parser.add_flag("--linear-colors", options.linear_colors, "read colours as 'build --linear-colors' does");
+  add_allow_outside_option(parser, allow_outside);
+  parser.group("Resources");
+  add_max_decoded_option(parser, max_decoded);
   if (const auto exit_code = parser.parse(args)) return *exit_code;
   const Result<std::uint64_t> decoded = parse_max_decoded(max_decoded);
   if (!decoded) return print_error(decoded.error());
@@ -107,9 +110,14 @@ int run_doctor(const Verb& verb, std::span<char* const> args) {
 
 }  // namespace
 
-const Verb kDoctorVerb{"doctor", "what in a source costs accuracy, bytes or time, worst first, with the remedy",
-                       "meshlode doctor scene.glb\n  meshlode doctor scene.glb --fail-on unwelded-seams,not-finite\n"
-                       "  meshlode doctor scene.lode --format json",
-                       run_doctor};
+const Verb kDoctorVerb{
+    "doctor", "find what in a scene costs accuracy, bytes or time, worst first, with the remedy",
+    "Looks for faults of a scene, such as seams that are not welded, degenerate triangles or positions far from the "
+    "origin, and says what each costs and how to fix it. Nothing is built or changed.\n\n"
+    "For an asset it reports what its tables show, such as groups that could not be simplified.",
+    "meshlode doctor scene.glb\n"
+    "  meshlode doctor scene.glb --fail-on unwelded-seams,not-finite\n"
+    "  meshlode doctor scene.lode --format json",
+    run_doctor};
 
 }  // namespace meshlode::cli

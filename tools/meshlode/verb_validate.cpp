@@ -43,7 +43,8 @@ int run_validate(const Verb& verb, std::span<char* const> args) {
   std::vector<std::string> paths;
   OutputOptions output;
   OptionParser parser(verb);
-  parser.add_positionals("file", paths, "one or more .lode assets");
+  parser.add_positionals("FILE", paths, "one or more .lode assets");
+  parser.group("Output");
   add_output_options(parser, output);
   if (const auto exit_code = parser.parse(args)) return *exit_code;
 
@@ -84,7 +85,11 @@ int run_validate(const Verb& verb, std::span<char* const> args) {
 
 }  // namespace
 
-const Verb kValidateVerb{"validate", "check every structural rule of an asset, each finding with its id",
-                         "meshlode validate scene.lode\n  meshlode validate out/*.lode --format json", run_validate};
+const Verb kValidateVerb{"validate", "check every structural rule of an asset; each finding has an id",
+                         "Checks the file's structure without its source: sections, tables, pages, the DAG, spheres, "
+                         "errors and borders. Each finding names the rule by its id, and the place in the file.",
+                         "meshlode validate scene.lode\n"
+                         "  meshlode validate out/*.lode --format json",
+                         run_validate};
 
 }  // namespace meshlode::cli
