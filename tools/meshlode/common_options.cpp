@@ -11,12 +11,14 @@
 #include "base/nearest_name.h"
 #include "base/printable.h"
 #include "options.h"
+#include "terminal.h"
 
 namespace meshlode::cli {
 
 namespace {
 
-std::string running_verb;  ///< for errors; written once, before any thread is started
+std::string running_verb;              ///< for errors; written once, before any thread is started
+std::string renamed_path, shown_name;  ///< the same
 
 }  // namespace
 
@@ -93,25 +95,39 @@ void name_verb_in_errors(std::string_view verb) {
   running_verb = std::string(verb);
 }
 
+void rename_in_errors(const std::string& path, const std::string& name) {
+  renamed_path = path;
+  shown_name = name;
+}
+
 int print_error(const Error& error) {
-  // One line whatever the detail holds: file names and JSON texts may have line breaks and control characters.
   const bool is_usage = error.code == ErrorCode::kUsage && !running_verb.empty();
-  std::string line = (is_usage ? "meshlode " + running_verb : "meshlode") + ": " + error.message();
+  const std::string program = (is_usage ? "meshlode " + running_verb : "meshlode") + ":";
+  std::string line = error.message();
+  for (std::size_t at = 0; !renamed_path.empty() && (at = line.find(renamed_path, at)) != std::string::npos;) {
+    line.replace(at, renamed_path.size(), shown_name);
+    at += shown_name.size();
+  }
+  // One line whatever the detail holds: file names and JSON texts may have line breaks and control characters.
   for (char& c : line) {
     if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) c = ' ';
   }
-  line += '\n';
+  line = colored(Stream::kErr, Color::kRed, program) + " " + line + "\n";
   std::fwrite(line.data(), 1, line.size(), stderr);
   return static_cast<int>(error.code);
 }
 
-bool print_out(const std::string& text) {
+Status write_stdout(std::string_view text) {
   const bool ok = std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
-  if (ok) return true;
   // A reader that has enough, such as head, is no failure: what the command found still decides the exit code.
-  if (errno == EPIPE) return true;
-  print_error({ErrorCode::kIo, "stdout", std::string("cannot write: ") + std::strerror(errno)});
-  return false;
+  if (ok || errno == EPIPE) return Ok{};
+  return Error{ErrorCode::kIo, "stdout", std::string("cannot write: ") + std::strerror(errno)};
+}
+
+bool print_out(const std::string& text) {
+  const Status written = write_stdout(text);
+  if (!written) print_error(written.error());
+  return static_cast<bool>(written);
 }
 
 }  // namespace meshlode::cli

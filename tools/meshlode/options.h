@@ -117,11 +117,15 @@ class JobLimit {
 
 /// From here on a usage error is one of this verb's: "meshlode build: …".
 void name_verb_in_errors(std::string_view verb);
+/// From here on errors call what has this path by this name.
+void rename_in_errors(const std::string& path, const std::string& name);
 
 /// One line on stderr, "meshlode: where: detail" ("meshlode VERB: …" for kUsage), and the exit code to return.
 int print_error(const Error& error);
 
-/// Writes text to stdout; false (and an error on stderr) where that fails, such as on a full disk. A pipe that is no
+/// Writes to stdout. Error: kIo, as on a full disk. A pipe that is no longer read is no failure.
+[[nodiscard]] Status write_stdout(std::string_view text);
+/// The same; false (and an error on stderr) where that fails, such as on a full disk. A pipe that is no
 /// longer read is no failure.
 [[nodiscard]] bool print_out(const std::string& text);
 

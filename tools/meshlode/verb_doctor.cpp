@@ -18,6 +18,7 @@
 #include "options.h"
 #include "run/read/asset.h"
 #include "scene/import/import.h"
+#include "streams.h"
 #include "verb.h"
 
 namespace meshlode::cli {
@@ -69,7 +70,7 @@ int run_doctor(const Verb& verb, std::span<char* const> args) {
   scene::ImportOptions options;
   OutputOptions output;
   OptionParser parser(verb);
-  parser.add_positional("FILE", path, "a .gltf, .glb, .ply, .obj or .stl scene, or a .lode asset");
+  parser.add_positional("FILE", path, "a .gltf, .glb, .ply, .obj or .stl scene, or a .lode asset; - for stdin");
   parser.group("Output");
   add_output_options(parser, output);
   parser.add_value("--fail-on FAULTS", fail_on,
@@ -94,7 +95,10 @@ int run_doctor(const Verb& verb, std::span<char* const> args) {
     if (auto known = app::find_failures(*fail_on, all_fault_ids(), {}); !known) return print_error(known.error());
   }
   Status sound = Ok{};
-  Result<app::DoctorReport> report = examine(path, options, sound);
+  const Result<std::string> place = input_path(path);
+  if (!place) return print_error(place.error());
+  path = input_name(path);
+  Result<app::DoctorReport> report = examine(*place, options, sound);
   if (!report) return print_error(report.error());
   report->file = path;
   if (fail_on) report->failed_on = *app::find_failures(*fail_on, all_fault_ids(), report->diagnoses);

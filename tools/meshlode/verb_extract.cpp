@@ -19,6 +19,7 @@
 #include "outputs.h"
 #include "promise_option.h"
 #include "run/read/asset.h"
+#include "streams.h"
 #include "verb.h"
 
 namespace meshlode::cli {
@@ -41,6 +42,7 @@ Error usage(const char* option, const char* detail) {
 
 Status check_options(const ExtractOptions& o) {
   if (!o.output) return usage("-o", "say where the GLB goes");
+  if (*o.output == kStream && o.out.json()) return usage("-o", "- and --format json both mean stdout");
   if (Status name = check_output_name("-o", *o.output, ".glb"); !name) return name;
   if (o.is_stuck) {
     if (o.request.has_way() || o.request.bounds.has_any() || o.mesh) return usage("--stuck", "stands alone");
@@ -204,7 +206,7 @@ int run_extract(const Verb& verb, std::span<char* const> args) {
   OptionParser parser(verb);
   parser.add_positional("FILE", o.input, "a .lode asset");
   parser.group("Output");
-  parser.add_value("-o,--output FILE", o.output, "GLB to write (required)");
+  parser.add_value("-o,--output FILE", o.output, "GLB to write, or - for stdout (required)");
   add_output_options(parser, o.out);
   parser.add_value("--mesh NAME|INDEX", o.mesh,
                    "export only this mesh; nodes of others stay, without a mesh (default: all meshes)");
@@ -238,7 +240,7 @@ int run_extract(const Verb& verb, std::span<char* const> args) {
   if (!asset) return print_error(asset.error());
   if (const Status promised = choose_promise(o.promise, *asset); !promised) return print_error(promised.error());
   if (const auto id = asset->file_id()) output_files().keep(*id);
-  if (const Status free = output_files().claim(*o.output); !free) return print_error(free.error());
+  if (const Status free = claim_output(*o.output); !free) return print_error(free.error());
   if (o.is_stuck) return extract_stuck(*asset, *o.output, o.out);
   auto chosen = choose_meshes(*asset, o.mesh);
   if (!chosen) return print_error(chosen.error());
@@ -250,11 +252,11 @@ int run_extract(const Verb& verb, std::span<char* const> args) {
     error.where = error.where.empty() ? o.input : o.input + ": " + error.where;
     return print_error(error);
   }
-  if (auto status = output_files().write(*o.output, *glb); !status) return print_error(status.error());
+  if (auto status = write_output(*o.output, *glb); !status) return print_error(status.error());
   if (o.out.json()) {
     if (!print_out(describe_json(*asset, *cuts, r.is_chain(), glb->size()))) return static_cast<int>(ErrorCode::kIo);
   } else if (!o.out.quiet) {
-    if (!print_out(describe_text(*asset, *cuts, r.is_chain(), glb->size(), *o.output))) {
+    if (!print_beside(*o.output, describe_text(*asset, *cuts, r.is_chain(), glb->size(), *o.output))) {
       return static_cast<int>(ErrorCode::kIo);
     }
   }

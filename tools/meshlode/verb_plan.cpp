@@ -14,8 +14,10 @@
 #include "material_looks.h"
 #include "measure_plan.h"
 #include "options.h"
+#include "outputs.h"
 #include "scene/import/import.h"
 #include "scene_passes.h"
+#include "streams.h"
 #include "verb.h"
 
 namespace meshlode::cli {
@@ -98,7 +100,7 @@ std::string plan_json(const scene::Scene& scene, const Planned& planned) {
 }
 
 int run_plan(const Verb& verb, std::span<char* const> args) {
-  std::string path, max_decoded = kDefaultMaxDecodedText;
+  std::string path, report = kStream, max_decoded = kDefaultMaxDecodedText;
   std::vector<std::string> allow_outside;
   BuildWords words;
   MeasureOptions measure;
@@ -108,6 +110,7 @@ int run_plan(const Verb& verb, std::span<char* const> args) {
   OptionParser parser(verb);
   parser.add_positional("INPUT", path, "a .gltf, .glb, .ply, .obj or .stl scene");
   parser.group("Output");
+  add_report_option(parser, report);
   add_output_options(parser, output);
   parser.add_flag("--measure", is_measured,
                   "build with this plan and with --keep all, three times each, and compare both");
@@ -131,13 +134,18 @@ int run_plan(const Verb& verb, std::span<char* const> args) {
   options.looks = &image_looks();
 
   JobLimit limit(jobs);
+  std::vector<FileId> files_read;
   const Result<scene::Scene> scene = scene::import_scene(path, {.repair = options.repair,
                                                                 .scene = words.scene,
+                                                                .files_read = &files_read,
                                                                 .max_decoded = *decoded,
                                                                 .may_lack_images = true,
                                                                 .allow_outside = std::move(*allowed),
                                                                 .linear_colors = options.linear_colors});
   if (!scene) return print_error(scene.error());
+  output_files().keep(files_read);
+  const Status free = output.json() ? claim_report(report, {".json"}) : claim_report(report, {});
+  if (!free) return print_error(free.error());
   const auto fail = [&](Error error) {
     error.where = path + (error.where.empty() ? "" : ": ") + error.where;
     return print_error(error);
@@ -157,7 +165,8 @@ int run_plan(const Verb& verb, std::span<char* const> args) {
     planned.measured = std::move(**measured);
   }
   const std::string text = output.json() ? plan_json(*scene, planned) : plan_text(*scene, planned);
-  return print_out(text) ? 0 : static_cast<int>(ErrorCode::kIo);
+  const Status written = write_output(report, text);
+  return written ? 0 : print_error(written.error());
 }
 
 }  // namespace

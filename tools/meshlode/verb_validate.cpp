@@ -10,6 +10,7 @@
 #include "judge/validate/rules.h"
 #include "judge/validate/validate.h"
 #include "options.h"
+#include "streams.h"
 #include "verb.h"
 
 namespace meshlode::cli {
@@ -43,7 +44,7 @@ int run_validate(const Verb& verb, std::span<char* const> args) {
   std::vector<std::string> paths;
   OutputOptions output;
   OptionParser parser(verb);
-  parser.add_positionals("FILE", paths, "one or more .lode assets");
+  parser.add_positionals("FILE", paths, "one or more .lode assets, or - for stdin");
   parser.group("Output");
   add_output_options(parser, output);
   if (const auto exit_code = parser.parse(args)) return *exit_code;
@@ -54,8 +55,14 @@ int run_validate(const Verb& verb, std::span<char* const> args) {
   json.begin_object();
   json.key("files");
   json.begin_array();
-  for (const std::string& path : paths) {
-    const Result<MappedFile> file = MappedFile::open(path);
+  for (const std::string& word : paths) {
+    const std::string path = input_name(word);
+    const Result<std::string> place = input_path(word);
+    if (!place) {
+      worst = std::max(worst, print_error(place.error()));
+      continue;
+    }
+    const Result<MappedFile> file = MappedFile::open(*place);
     if (!file) {
       worst = std::max(worst, print_error(file.error()));
       continue;
@@ -63,7 +70,7 @@ int run_validate(const Verb& verb, std::span<char* const> args) {
     const judge::ValidationReport report = judge::validate_asset(file->bytes());
     if (report.finding_count > 0) worst = std::max(worst, is_no_asset(report) ? kInvalid : kCheckFailed);
     if (is_no_asset(report)) {
-      if (const Status named = check_may_be_asset(path); !named) print_error(named.error());
+      if (const Status named = check_may_be_asset(*place); !named) print_error(named.error());
     }
     text += describe(path, report, output.quiet);
     json.begin_object();
