@@ -106,7 +106,7 @@ TEST(HelpText, ListsExamplesThenGroupsAndFillsLines) {
 TEST(HelpText, KeepsADefaultInOneLine) {
   EXPECT_EQ(fill_lines("a b (default: c)", "", 2, 13), "a b\n  (default: c)\n");
   EXPECT_EQ(fill_lines("longer  than\nall", "", 0, 4), "longer\nthan\nall\n");
-  EXPECT_EQ(fill_lines("", "", 0), "\n");
+  EXPECT_EQ(fill_lines("", "", 0, 4), "\n");
 }
 
 TEST(ReferencePage, QuotesMarkup) {

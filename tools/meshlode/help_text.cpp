@@ -28,7 +28,7 @@ std::string option_lines(const OptionInfo& option) {
     head.clear();
   }
   head.resize(kTextColumn, ' ');
-  return lines + fill_lines(help_with_default(option), head, kTextColumn);
+  return lines + fill_lines(help_with_default(option), head, kTextColumn, kHelpWidth);
 }
 
 std::string heading(const std::string& text) {
@@ -61,15 +61,13 @@ std::vector<std::string> groups_of(const OptionTable& options) {
 }
 
 std::string fill_lines(std::string_view text, const std::string& first, std::size_t indent, std::size_t width) {
+  constexpr std::size_t kLongestDefault = 24;
   std::string lines, line = first;
   bool is_empty = true;
   while (!text.empty()) {
     std::size_t end = std::min(text.find_first_of(" \n"), text.size());
-    if (text.starts_with("(default: ")) {  // in one line with what it is
-      constexpr std::size_t kLongest = 24;
-      const std::size_t close = text.find(')');
-      if (close < kLongest) end = close + 1;
-    }
+    const std::size_t close = text.starts_with("(default: ") ? text.find(')') : std::string_view::npos;
+    if (close < kLongestDefault) end = close + 1;
     const std::string_view word = text.substr(0, end);
     text.remove_prefix(std::min(end + 1, text.size()));
     if (word.empty()) continue;
@@ -117,7 +115,7 @@ std::string reference_path(const std::string& verb) {
 }
 
 std::string help_text(const VerbHelp& verb) {
-  std::string text = fill_lines(verb.summary + ".", "", 0);
+  std::string text = fill_lines(verb.summary + ".", "", 0, kHelpWidth);
   text[0] = static_cast<char>(text[0] >= 'a' && text[0] <= 'z' ? text[0] - 'a' + 'A' : text[0]);
   text += "\n" + colored(Stream::kOut, Color::kBold, "Usage:") + " " + usage_line(verb) + "\n";
   text += heading("Examples") + "  " + verb.example + "\n";
@@ -127,7 +125,7 @@ std::string help_text(const VerbHelp& verb) {
       if (option.group == group) text += option_lines(option);
     }
   }
-  text += "\n" + fill_lines("Exit status: " + exit_codes_line(), "", 2);
+  text += "\n" + fill_lines("Exit status: " + exit_codes_line(), "", 2, kHelpWidth);
   return text + "Manual: man meshlode-" + verb.name + ", " + reference_path(verb.name) + "\n";
 }
 

@@ -11,13 +11,14 @@
 
 namespace meshlode::cli {
 
-/// Of no line of the help are more columns.
+/// The most columns of a line.
 constexpr std::size_t kHelpWidth = 100;
 
-/// Words filled into lines of at most `width` columns, each begun by `indent` spaces but the first, which is begun by
-/// `first`. A word that is longer has a line of its own. Ends with a line break.
+/// Words filled into lines of at most `width` bytes, each begun by `indent` spaces but the first, which is begun by
+/// `first`. A word that is longer has a line of its own; a short "(default: VALUE)" is one word. Ends with a line
+/// break.
 [[nodiscard]] std::string fill_lines(std::string_view text, const std::string& first, std::size_t indent,
-                                     std::size_t width = kHelpWidth);
+                                     std::size_t width);
 
 [[nodiscard]] std::string help_text(const VerbHelp& verb);
 /// "meshlode build [OPTIONS] INPUT...".

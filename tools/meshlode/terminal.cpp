@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "terminal.h"
 
+#include <algorithm>
 #include <cstdlib>
 #include <string>
 
@@ -35,6 +36,26 @@ void use_color(std::string_view choice) {
 
 std::string colored(Stream stream, Color color, const std::string& text) {
   return has_color(stream) ? kCodes[static_cast<std::size_t>(color)] + text + "\033[0m" : text;
+}
+
+std::string with_colored_words(const std::string& text, std::span<const ColoredWord> words) {
+  if (!has_color(Stream::kOut)) return text;
+  std::string out;
+  bool is_done = false;  // with this line
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find_first_of(" \n", at), text.size());
+    const std::string word = text.substr(at, end - at);
+    const auto found = std::find_if(words.begin(), words.end(), [&](const ColoredWord& w) { return w.word == word; });
+    const bool is_colored = !is_done && found != words.end();
+    out += is_colored ? colored(Stream::kOut, found->color, word) : word;
+    is_done = is_done || is_colored;
+    if (end < text.size()) {
+      out += text[end];
+      is_done = is_done && text[end] != '\n';
+    }
+    at = end + 1;
+  }
+  return out;
 }
 
 bool is_unicode_terminal() {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -18,5 +19,12 @@ enum class Stream : std::uint8_t { kOut, kErr };
 void use_color(std::string_view choice);
 /// The text in this colour where the stream shows colours, else as it is.
 [[nodiscard]] std::string colored(Stream stream, Color color, const std::string& text);
+
+struct ColoredWord {
+  std::string_view word;
+  Color color;
+};
+/// Text for stdout with the first of these words in each line, between spaces, in its colour where colours are shown.
+[[nodiscard]] std::string with_colored_words(const std::string& text, std::span<const ColoredWord> words);
 
 }  // namespace meshlode::cli

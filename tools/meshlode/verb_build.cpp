@@ -232,7 +232,7 @@ int run_jobs(const std::vector<Job>& jobs, const BuildCommand& command) {
     if (const auto error = command.cache->store().first_error()) print_error(*error);
   }
   const bool is_told = !command.out.quiet && !command.out.json() && !is_dry;
-  if (is_told && jobs.size() > 1) std::fputs(app::summary_table(results).c_str(), stderr);
+  if (is_told && jobs.size() > 1) std::fputs(app::summary_text(results).c_str(), stderr);
   if (command.out.json() && !print_out(report)) worst = std::max(worst, static_cast<int>(ErrorCode::kIo));
   if (is_dry && !command.out.json() && !print_out(plan_text(results))) {
     worst = std::max(worst, static_cast<int>(ErrorCode::kIo));

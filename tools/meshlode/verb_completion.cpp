@@ -26,7 +26,7 @@ int run_completion(const Verb& verb, std::span<char* const> args) {
   std::vector<std::string> names;
   for (const Shell& shell : kShells) names.emplace_back(shell.name);
   OptionParser parser(verb);
-  parser.add_positional("SHELL", name, "bash, zsh or fish", names);
+  parser.add_positional("SHELL", name, "shell to complete in", names);
   parser.group("Output");
   parser.add_value("-o,--output FILE", output, "file to write (default: stdout)");
   if (const auto exit_code = parser.parse(args)) return *exit_code;

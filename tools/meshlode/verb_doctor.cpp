@@ -19,6 +19,7 @@
 #include "run/read/asset.h"
 #include "scene/import/import.h"
 #include "streams.h"
+#include "terminal.h"
 #include "verb.h"
 
 namespace meshlode::cli {
@@ -63,6 +64,8 @@ std::vector<std::string> all_fault_ids() {
   return ids;
 }
 
+constexpr ColoredWord kSeverities[] = {{"[high,", Color::kRed}, {"[medium,", Color::kYellow}, {"[low,", Color::kDim}};
+
 int run_doctor(const Verb& verb, std::span<char* const> args) {
   std::string path, max_decoded = kDefaultMaxDecodedText;
   std::vector<std::string> allow_outside;
@@ -102,7 +105,8 @@ int run_doctor(const Verb& verb, std::span<char* const> args) {
   if (!report) return print_error(report.error());
   report->file = path;
   if (fail_on) report->failed_on = *app::find_failures(*fail_on, all_fault_ids(), report->diagnoses);
-  const std::string text = output.json() ? app::doctor_json(*report) : app::doctor_text(*report);
+  const std::string text =
+      output.json() ? app::doctor_json(*report) : with_colored_words(app::doctor_text(*report), kSeverities);
   const bool is_silent = output.quiet && !output.json() && report->diagnoses.empty();
   if (!is_silent && !print_out(text)) return static_cast<int>(ErrorCode::kIo);
   if (!sound) return print_error({sound.error().code, path + ": " + sound.error().where, sound.error().detail});

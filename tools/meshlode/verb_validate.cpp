@@ -11,6 +11,7 @@
 #include "judge/validate/validate.h"
 #include "options.h"
 #include "streams.h"
+#include "terminal.h"
 #include "verb.h"
 
 namespace meshlode::cli {
@@ -28,14 +29,16 @@ bool is_no_asset(const judge::ValidationReport& report) {
 std::string describe(const std::string& path, const judge::ValidationReport& report, bool quiet) {
   std::string text;
   for (const judge::Finding& finding : report.findings) {
-    text += path + ": " + finding.id + (finding.invariant.empty() ? "" : " (" + finding.invariant + ")") + ": " +
-            finding.where + ": " + finding.detail + "\n";
+    text += path + ": " + colored(Stream::kOut, Color::kRed, finding.id) +
+            (finding.invariant.empty() ? "" : " (" + finding.invariant + ")") + ": " + finding.where + ": " +
+            finding.detail + "\n";
   }
   if (report.finding_count > report.findings.size()) {
     text += path + ": and " + std::to_string(report.finding_count - report.findings.size()) + " more findings\n";
   }
   if (report.finding_count == 0 && !quiet) {
-    text += path + ": valid, " + std::to_string(report.checked.size()) + " rules hold\n";
+    text += path + ": " + colored(Stream::kOut, Color::kGreen, "valid") + ", " + std::to_string(report.checked.size()) +
+            " rules hold\n";
   }
   return text;
 }

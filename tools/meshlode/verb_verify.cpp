@@ -22,11 +22,18 @@
 #include "run/read/asset.h"
 #include "run/select/select.h"
 #include "source_scene.h"
+#include "terminal.h"
 #include "verb.h"
 
 namespace meshlode::cli {
 
 namespace {
+
+constexpr ColoredWord kStatusWords[] = {{"ok", Color::kGreen},
+                                        {"FAILED", Color::kRed},
+                                        {"skipped", Color::kYellow},
+                                        {"verified:", Color::kGreen},
+                                        {"NOT", Color::kRed}};
 
 std::string describe(const judge::VerifyReport& report, bool quiet) {
   std::string text;
@@ -247,7 +254,7 @@ int run_verify(const Verb& verb, std::span<char* const> args) {
     }
   }
   if (!print_out(output.json() ? to_json(path, source_options.path, options, report)
-                               : describe(report, output.quiet))) {
+                               : with_colored_words(describe(report, output.quiet), kStatusWords))) {
     return static_cast<int>(ErrorCode::kIo);
   }
   return report.finding_count == 0 ? 0 : static_cast<int>(ErrorCode::kCheckFailed);
