@@ -5,7 +5,7 @@
   tools/include_graph.py             prints the graph
   tools/include_graph.py --rooms     prints the arrows between rooms as text, most first; exits 1 where rooms of a floor,
                                      and files that lie in the floor itself, include each other in a circle
-  tools/include_graph.py --write     rewrites the block between the markers in docs/architecture.md
+  tools/include_graph.py --write     rewrites the block between the markers in docs/explanation/architecture.md
   tools/include_graph.py --check     exits 1 where that block is not the graph
 
 Python's standard library alone. What is allowed is another question: cmake/layers.txt, held by tests/house.
@@ -16,7 +16,7 @@ import re
 import sys
 
 REPOSITORY = pathlib.Path(__file__).resolve().parent.parent
-DOCUMENT = REPOSITORY / "docs/architecture.md"
+DOCUMENT = REPOSITORY / "docs/explanation/architecture.md"
 BEGIN = "<!-- include graph: written by tools/include_graph.py --write -->"
 END = "<!-- end of the include graph -->"
 SOURCES = {".h", ".cpp", ".c", ".inl", ".glsl", ".comp", ".vert", ".frag", ".mesh"}
@@ -127,7 +127,7 @@ def main(arguments):
     if arguments == ["--check"]:
         if between == block:
             return 0
-        print("docs/architecture.md: the include graph is stale; run tools/include_graph.py --write", file=sys.stderr)
+        print("docs/explanation/architecture.md: the include graph is stale; run tools/include_graph.py --write", file=sys.stderr)
         return 1
     DOCUMENT.write_text(before + BEGIN + block + END + behind, encoding="utf-8")
     return 0

@@ -12,7 +12,7 @@
 // Errors. Every input is checked before it is used: sizes that do not fit, indices out of range, numbers that are not
 // finite → ErrorCode::kInvalid with a place such as "meshes[0].primitives[2].indices[17]". kUsage: an option that makes
 // no sense, with its name ("BuildOptions::grid_step"). kUnsupported: a budget or grid that needs more bits than the
-// format has, a mesh with more triangles than ids (docs/performance.md). kBuildFailed: cancelled, out of memory, or
+// format has, a mesh with more triangles than ids (docs/log/build-time.md). kBuildFailed: cancelled, out of memory, or
 // more memory needed than allowed. kIo: only from the functions that touch files. No exception leaves.
 //
 // Determinism (I10). The same input and options give the same bytes for any number of threads, and for builds that run
@@ -125,11 +125,11 @@ enum class UvErrorUnit : std::uint8_t {
 
 /// Which meshes are thinned out as aggregates (foliage, grass, soups): pieces are merged so that a picture stays as
 /// much covered, where a simplifier would keep each of them. Errors of such a mesh are of coverage
-/// (docs/aggregates.md).
+/// (docs/guides/foliage.md).
 enum class AggregateChoice : std::uint8_t {
   kNever,
   kAuto,    ///< meshes of many small loose pieces, and parts of meshes that are: the leaves of a tree, its trunk not.
-            ///< A part is a mesh of the asset, "tree#leaves", behind those of the input (docs/aggregates.md)
+            ///< A part is a mesh of the asset, "tree#leaves", behind those of the input (docs/guides/foliage.md)
   kAlways,  ///< all pieces of at most 512 triangles
   kNamed,   ///< those of BuildOptions::aggregate_names
 };
@@ -170,8 +170,9 @@ struct BuildOptions {
   /// kNamed: names of meshes, of which all pieces of at most 512 triangles are thinned out, and of materials, of whose
   /// pieces the same holds; comma by comma, '*' is any characters and '?' is one.
   std::string aggregate_names;
-  /// What errors the asset has, and so what a renderer may choose to keep (docs/selection.md): with kTexels those of
-  /// texture coordinates beside those of positions, with kAppearance those of normals too. Works with every tier.
+  /// What errors the asset has, and so what a renderer may choose to keep (docs/reference/selection.md): with kTexels
+  /// those of texture coordinates beside those of positions, with kAppearance those of normals too. Works with every
+  /// tier.
   format::Promise promise = format::Promise::kPosition;
   std::uint64_t max_memory_bytes = 0;  ///< meshes wait for each other to keep it, or it is refused; 0: what is left
   /// Of build_file: what compressed geometry may take decoded beyond what the size of its file justifies.

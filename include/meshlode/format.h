@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The bytes of a .lode asset, versions 1 and 2. docs/format.md is the normative text; this header is the same thing as
-// structs.
+// The bytes of a .lode asset, versions 1 and 2. docs/reference/format.md is the normative text; this header is the same
+// thing as structs.
 //
 // Everything is little-endian. Every struct here is copied as it lies in the file: sizes are asserted, there is no
 // implicit padding, and reserved fields are written as zero and ignored on reading.
@@ -50,7 +50,7 @@ struct FileHeader {
   std::uint32_t section_count;
   std::uint64_t file_bytes;            ///< size of the whole file
   std::uint64_t section_table_offset;  ///< from the start of the file
-  std::uint8_t content_hash[16];       ///< XXH3-128 over the decoded content, see docs/format.md
+  std::uint8_t content_hash[16];       ///< XXH3-128 over the decoded content, see docs/reference/format.md
   std::uint32_t section_entry_bytes;   ///< stride of the section table
   std::uint32_t flags;                 ///< zero
   std::uint64_t header_checksum;       ///< XXH3-64 of the header with this field zero, then of the section table
@@ -83,9 +83,10 @@ struct SectionEntry {
   std::uint32_t id;       ///< SectionId
   std::uint32_t version;  ///< of this section's layout; 0
   std::uint32_t flags;    ///< kSectionRequired
-  std::uint32_t codec;   ///< of the section as a whole: 0 as it is, 1 by columns (docs/codecs.md); pages have their own
-  std::uint64_t offset;  ///< from the start of the file, a multiple of kSectionAlignment
-  std::uint64_t bytes;   ///< stored
+  std::uint32_t
+      codec;  ///< of the section as a whole: 0 as it is, 1 by columns (docs/reference/codecs.md); pages have their own
+  std::uint64_t offset;         ///< from the start of the file, a multiple of kSectionAlignment
+  std::uint64_t bytes;          ///< stored
   std::uint64_t decoded_bytes;  ///< after the codec
   std::uint64_t checksum;       ///< XXH3-64 of the stored bytes; 0 for kPageData, whose pages carry their own
   std::uint32_t record_bytes;   ///< stride of a table; 0 for text and raw bytes
@@ -196,7 +197,7 @@ constexpr std::uint16_t kGroupTerminal =
     1u;                                    ///< nothing coarser replaces its members: they are roots, error is infinite
 constexpr std::uint16_t kGroupStuck = 2u;  ///< terminal, and not because the top was reached
 /// Never terminal. Its pieces (leaves, blades) are replaced by fewer ones that cover as much of a picture: `error` is
-/// the pixel size from which on they do (docs/format.md, "Aggregates"), not a distance between surfaces.
+/// the pixel size from which on they do (docs/reference/format.md, "Aggregates"), not a distance between surfaces.
 constexpr std::uint16_t kGroupAggregate = 4u;
 
 /// Why a group could not be simplified further.
@@ -266,7 +267,7 @@ static_assert(sizeof(NodeRecord) == 28);
 
 // ------------------------------------------------------------------------------------------------------------ promises
 
-/// What a cut at t pixels promises to be within t pixels of: see docs/selection.md, "What is promised".
+/// What a cut at t pixels promises to be within t pixels of: see docs/reference/selection.md, "What is promised".
 enum class Promise : std::uint32_t {
   kPosition = 0,    ///< positions: GroupRecord::error
   kTexels = 1,      ///< positions and texture coordinates together

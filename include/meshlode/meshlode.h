@@ -14,7 +14,8 @@
  * distances in object units; MESHLODE_INFINITE_ERROR means "never passes".
  *
  * Ids are indices into the tables below, all global to the asset; MESHLODE_NONE is "no such id". The records are the
- * bytes of the file as docs/format.md describes them, for a machine to read and for a GPU to be given as they are.
+ * bytes of the file as docs/reference/format.md describes them, for a machine to read and for a GPU to be given as they
+ * are.
  *
  * Errors. Functions that can fail return a meshlode_status and, where `error` is not NULL, leave the same status and a
  * text there (an empty text where nothing failed). Every byte of an asset is treated as hostile: opening checks every
@@ -253,7 +254,7 @@ MESHLODE_API const char* meshlode_scene_json(const meshlode_asset* asset, size_t
 
 /* ------------------------------------------------------------------------------------------------------ promises */
 
-/* What a cut at t pixels is within t pixels of (docs/selection.md). */
+/* What a cut at t pixels is within t pixels of (docs/reference/selection.md). */
 typedef enum meshlode_promise {
   MESHLODE_PROMISE_POSITION = 0,  /* positions; every asset has it, and it is chosen when one is opened */
   MESHLODE_PROMISE_TEXELS = 1,    /* texture coordinates too */
@@ -357,7 +358,7 @@ MESHLODE_API meshlode_status meshlode_decode_floats(const meshlode_asset* asset,
                                                     meshlode_error* error);
 
 /* The integers of a cluster's vertices, exactly as stored: vertex i has values[i * channel_count + c], with the
- * channels in the order of docs/format.md. */
+ * channels in the order of docs/reference/format.md. */
 typedef struct meshlode_cluster_integers {
   uint32_t value_capacity; /* of values: vertex_count * channel_count are needed */
   uint32_t triangle_capacity;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Where everything of a cluster lies in a decoded page (docs/format.md, Pages). Header-only, C++ runtime only;
-// decode.glsl is the same for GPUs. A layout that was read without complaint lies inside the page, so that code behind
-// it needs no checks of its own, whatever the bytes were; what the numbers mean is left to decoding.
+// Where everything of a cluster lies in a decoded page (docs/reference/format.md, Pages). Header-only, C++ runtime
+// only; decode.glsl is the same for GPUs. A layout that was read without complaint lies inside the page, so that code
+// behind it needs no checks of its own, whatever the bytes were; what the numbers mean is left to decoding.
 #pragma once
 
 #include <bit>

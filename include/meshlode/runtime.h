@@ -59,8 +59,8 @@ struct UniformCut {
   double stored_error = 0.0;            ///< object units: the largest error in it, at least the mesh's level0_deviation
 };
 
-/// A page in its decoded, GPU-ready form (docs/format.md, Pages): a view into the asset's bytes where the file stores
-/// it uncompressed (the AssetFile's storage must then outlive it), else memory of its own.
+/// A page in its decoded, GPU-ready form (docs/reference/format.md, Pages): a view into the asset's bytes where the
+/// file stores it uncompressed (the AssetFile's storage must then outlive it), else memory of its own.
 class PageBytes {
  public:
   PageBytes(PageBytes&&) noexcept;
@@ -124,7 +124,8 @@ class AssetFile {
   [[nodiscard]] std::span<const format::PageRecord> pages() const;
   [[nodiscard]] std::span<const std::uint32_t> page_dependencies() const;
   [[nodiscard]] std::span<const format::BlobRecord> blobs() const;
-  /// What the asset promises besides positions (docs/selection.md): one record a mesh, and one a group; or none.
+  /// What the asset promises besides positions (docs/reference/selection.md): one record a mesh, and one a group; or
+  /// none.
   [[nodiscard]] std::span<const format::PromiseMeshRecord> promises() const;
   [[nodiscard]] std::span<const format::PromiseGroupRecord> promise_errors() const;
   /// Text of a record's StringRef, UTF-8 as the source had it.

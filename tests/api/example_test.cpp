@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// docs/api.md shows the example that is compiled and run, to the letter.
+// docs/reference/api.md shows the example that is compiled and run, to the letter.
 #include <fstream>
 #include <sstream>
 #include <string>
@@ -18,19 +18,20 @@ std::string read_text(const std::string& path) {
 
 TEST(ApiDocs, ShowTheExampleThatIsCompiled) {
   const std::string code = read_text("tests/api/example.cpp");
-  const std::string page = read_text("docs/api.md");
+  const std::string page = read_text("docs/reference/api.md");
   ASSERT_FALSE(code.empty());
   ASSERT_FALSE(page.empty());
   const std::string body = code.substr(code.find("#include"));
-  EXPECT_NE(page.find("```cpp\n" + body + "```"), std::string::npos) << "copy tests/api/example.cpp into docs/api.md";
+  EXPECT_NE(page.find("```cpp\n" + body + "```"), std::string::npos)
+      << "copy tests/api/example.cpp into docs/reference/api.md";
 }
 
 TEST(ApiDocs, ShowTheCExampleThatIsCompiled) {
   const std::string code = read_text("tests/api/c_example.c");
   ASSERT_FALSE(code.empty());
   const std::string body = code.substr(code.find("#include"));
-  EXPECT_NE(read_text("docs/api.md").find("```c\n" + body + "```"), std::string::npos)
-      << "copy tests/api/c_example.c into docs/api.md";
+  EXPECT_NE(read_text("docs/reference/api.md").find("```c\n" + body + "```"), std::string::npos)
+      << "copy tests/api/c_example.c into docs/reference/api.md";
 }
 
 }  // namespace

@@ -234,7 +234,8 @@ int run_sweep(const Verb& verb, std::span<char* const> args) {
   parser.add_value("--want WISHES", words.want,
                    "bounds and a goal, such as 'deviation<=1e-4, bytes min'; several are separated by semicolons "
                    "(default: none)");
-  parser.add_value("--knobs NAMES", words.knobs, "settings to vary, comma-separated (default: all)");
+  parser.add_value("--knobs NAMES", words.knobs,
+                   "settings to vary, comma-separated, as docs/guides/sweep.md lists them (default: all)");
   parser.add_value("--rounds", options.rounds, "how often each asset is built");
   parser.add_value("--samples", words.samples,
                    "area-uniform samples per direction of a deviation (default: 100000, fewer for a short --budget)");

@@ -67,8 +67,8 @@ class DeviationFrom {
 [[nodiscard]] Result<Surface> surface_of_clusters(const run::Asset& asset, MeshId mesh,
                                                   std::span<const ClusterId> clusters);
 
-/// The source: the triangles that have area, exactly (docs/format.md, "The source"), all primitives of the mesh
-/// together, as read.
+/// The source: the triangles that have area, exactly (docs/reference/format.md, "The source"), all primitives of the
+/// mesh together, as read.
 [[nodiscard]] Surface surface_of_source(const scene::SourceMesh& mesh);
 
 }  // namespace meshlode::judge

@@ -13,7 +13,7 @@ constexpr const char* kHead =
     "<!-- SPDX-License-Identifier: GPL-3.0-or-later -->\n"
     "# Hard cases: where each one ends\n"
     "\n"
-    "Written by `hard_cases sweep --table docs/hard-cases.md --picture docs/pictures/hard-cases.png` "
+    "Written by `hard_cases sweep --table docs/reference/hard-cases.md --picture docs/pictures/hard-cases.png` "
     "(`tests/hard/main.cpp`);\n"
     "edit the program, not this page. What each law says, and why it is exact or where its bound comes from:\n"
     "[numerics.md](numerics.md). `meshlode doctor` names the case that a fault of a scene belongs to.\n"
