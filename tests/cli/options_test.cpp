@@ -124,7 +124,7 @@ TEST(OutputName, AnExtensionOfAnotherFormatIsRefused) {
     EXPECT_FALSE(check_output_name("-o", name, ".png")) << name;
   }
   EXPECT_EQ(check_output_name("-o", "x.gltf", ".glb").error().detail,
-            "what is written is a .glb file, not a .gltf file (got 'x.gltf'); give a name that ends in .glb");
+            "writes a .glb file, not a .gltf file (got 'x.gltf'); choose a name that ends in .glb");
 }
 
 TEST(OutputName, AnExtensionOfAKnownFormatIsRefusedForText) {

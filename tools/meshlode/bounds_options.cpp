@@ -24,7 +24,7 @@ Status check_measured(const char* option, const run::Asset& asset, std::size_t m
     if ((group.flags & format::kGroupTerminal) != 0 || group.*deviation < format::kInfiniteError) continue;
     return Error{ErrorCode::kUnsupported, option,
                  "mesh " + std::to_string(mesh) +
-                     ": the asset does not say how far it deviates: " + "this was not measured when it was built"};
+                     ": the asset does not store this deviation: " + "it was not measured by the build"};
   }
   return Ok{};
 }

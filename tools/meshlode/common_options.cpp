@@ -39,7 +39,7 @@ Result<std::vector<std::filesystem::path>> parse_allow_outside(const std::vector
   for (const std::string& folder : folders) {
     std::error_code error;
     if (!std::filesystem::is_directory(folder, error)) {
-      return Error{ErrorCode::kIo, "--allow-outside", "'" + printable(folder) + "' is no folder"};
+      return Error{ErrorCode::kIo, "--allow-outside", "'" + printable(folder) + "' is not a folder"};
     }
     out.emplace_back(folder);
   }

@@ -120,7 +120,7 @@ Result<std::vector<Job>> take_share(const std::vector<Job>& jobs, BuildCommand& 
   TRY_LET(shard, app::parse_shard(command.words.shard));
   if (command.words.fail_fast) {
     return Error{ErrorCode::kUsage, "--shard",
-                 "give this or --fail-fast: shards know nothing of each other's failures"};
+                 "give this or --fail-fast, not both: shards do not know of each other's failures"};
   }
   std::vector<std::uint64_t> weights;
   weights.reserve(jobs.size());
@@ -181,9 +181,9 @@ Status check_formats(const BuildCommand& command, const std::string& output) {
 Status check_names(const BuildCommand& command, const std::vector<Job>& jobs) {
   for (const Job& job : jobs) {
     if (is_same_place(job.input, job.output) && look_at_file(job.input.string()).form == FileForm::kAsset) {
-      return Error{ErrorCode::kUnsupported, job.input.string(),
-                   "this is a .lode asset already; look at it with 'meshlode info', store it anew with 'meshlode "
-                   "repack'"};
+      return Error{
+          ErrorCode::kUnsupported, job.input.string(),
+          "this is a .lode asset already; look at it with 'meshlode info', change its codec with 'meshlode repack'"};
     }
     if (command.words.depfile.empty()) continue;
     for (const fs::path& path : {job.input, job.output}) {
@@ -345,7 +345,7 @@ int run_command(const Verb& verb, std::span<char* const> args, bool is_study) {
   command.options.lists_files = !command.words.depfile.empty() || !command.words.manifest.empty();
   command.options.side_outputs = std::move(side_outputs);
   int none = 0;
-  if (plan->empty()) none = print_error({ErrorCode::kIo, inputs.front(), "no scene below this folder"});
+  if (plan->empty()) none = print_error({ErrorCode::kIo, inputs.front(), "no scene in this folder"});
   return std::max(none, run_jobs(*share, command));
 }
 

@@ -42,11 +42,11 @@ Error usage(const char* option, const char* detail) {
 }
 
 Status check_options(const ExtractOptions& o) {
-  if (!o.output) return usage("-o", "say where the GLB goes");
+  if (!o.output) return usage("-o", "name the GLB to write");
   if (*o.output == kStream && o.out.json()) return usage("-o", "- and --format json both mean stdout");
   if (Status name = check_output_name("-o", *o.output, ".glb"); !name) return name;
   if (o.is_stuck) {
-    if (o.request.has_way() || o.request.bounds.has_any() || o.mesh) return usage("--stuck", "stands alone");
+    if (o.request.has_way() || o.request.bounds.has_any() || o.mesh) return usage("--stuck", "cannot be combined with a cut, a bound or --mesh");
   } else if (auto status = check_request(o.request); !status) {
     return status.error();
   }

@@ -65,7 +65,7 @@ int run_measure(const Verb& verb, std::span<char* const> args) {
   add_jobs_option(parser, o.jobs);
   add_max_decoded_option(parser, o.max_decoded);
   if (const auto exit_code = parser.parse(args)) return *exit_code;
-  if (!o.output) return print_error({ErrorCode::kUsage, "-o", "say where the asset goes"});
+  if (!o.output) return print_error({ErrorCode::kUsage, "-o", "name the asset to write"});
   if (const Status name = check_output_name("-o", *o.output, ".lode"); !name) return print_error(name.error());
   if (const Status given = check_source_options(verb.name, o.input, o.source); !given) {
     return print_error(given.error());

@@ -67,8 +67,8 @@ int run_repack(const Verb& verb, std::span<char* const> args) {
   add_jobs_option(parser, o.jobs);
   add_max_decoded_option(parser, o.max_decoded);
   if (const auto exit_code = parser.parse(args)) return *exit_code;
-  if (!o.output) return print_error({ErrorCode::kUsage, "-o", "say where the asset goes"});
-  if (!o.codec) return print_error({ErrorCode::kUsage, "--codec", "say how pages are to be stored"});
+  if (!o.output) return print_error({ErrorCode::kUsage, "-o", "name the asset to write"});
+  if (!o.codec) return print_error({ErrorCode::kUsage, "--codec", "name the codec"});
   if (const Status name = check_output_name("-o", *o.output, ".lode"); !name) return print_error(name.error());
   const std::optional<format::Codec> codec = value_in(format::kCodecNames, *o.codec);
   const Result<std::uint64_t> max_decoded = parse_max_decoded(o.max_decoded);

@@ -68,7 +68,7 @@ Result<std::vector<std::string>> parse_knobs(std::string text) {
     const std::string name = text.substr(at, text.find(',', at) - at);
     if (std::find(known.begin(), known.end(), name) == known.end()) {
       return Error{ErrorCode::kUsage, "--knobs",
-                   "'" + name.substr(0, 64) + "' is no knob" + nearest_or_all(name, known)};
+                   "'" + name.substr(0, 64) + "' is not a knob" + nearest_or_all(name, known)};
     }
     names.push_back(name);
   }

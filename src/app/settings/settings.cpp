@@ -301,7 +301,7 @@ std::string find_fault(Setting setting, std::string_view word) {
       return word == "auto" || parse_positive(word) ? "" : wanted("auto or a distance above 0 in mesh units", word);
 
     case Setting::kAggregate:
-      return !word.empty() ? "" : "give never, auto, always, or names of meshes and materials, comma by comma";
+      return !word.empty() ? "" : "give never, auto, always, or names of meshes and materials, comma-separated";
     case Setting::kClusterTriangles:
       return parse_cluster_triangles(word) ? "" : wanted("a whole number of triangles from 1 to 256", word);
     case Setting::kGroupClusters:
