@@ -124,7 +124,7 @@ struct Mention {
 
 const std::vector<Mention>& environment() {
   static const std::vector<Mention> all = {
-      {"MESHLODE_CACHE", "folder of earlier builds where --cache is not given; see --no-cache", {"build"}},
+      {"MESHLODE_CACHE", "folder of earlier builds, unless --cache or --no-cache is given", {"build"}},
       {"NO_COLOR", "if set and not empty, nothing is coloured unless --color always is given", {}},
       {"TERM", "nothing is coloured if it is not set or is dumb", {}},
       {"LC_ALL, LC_CTYPE, LANG",

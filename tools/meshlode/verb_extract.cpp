@@ -46,7 +46,8 @@ Status check_options(const ExtractOptions& o) {
   if (*o.output == kStream && o.out.json()) return usage("-o", "- and --format json both mean stdout");
   if (Status name = check_output_name("-o", *o.output, ".glb"); !name) return name;
   if (o.is_stuck) {
-    if (o.request.has_way() || o.request.bounds.has_any() || o.mesh) return usage("--stuck", "cannot be combined with a cut, a bound or --mesh");
+    if (o.request.has_way() || o.request.bounds.has_any() || o.mesh)
+      return usage("--stuck", "cannot be combined with a cut, a bound or --mesh");
   } else if (auto status = check_request(o.request); !status) {
     return status.error();
   }

@@ -90,7 +90,8 @@ TEST(Budget, ConditionsThatHoldAreToldWithPlaceAndValue) {
   EXPECT_EQ(judged("bytes>=1000"), "budget exceeded: bytes>=1000: bytes is 1000");
   EXPECT_EQ(judged("totals.clusters>0.01K"), "budget exceeded: totals.clusters>0.01K: totals.clusters is 20");
   EXPECT_EQ(judged("tier==qem,label!=a, is_good==false"), "budget exceeded: tier==qem: tier is \"qem\"");
-  EXPECT_EQ(judged("any(meshes).roots>1"), "budget exceeded: any(meshes).roots>1: meshes[1].roots (moss) is 2, and 1 more");
+  EXPECT_EQ(judged("any(meshes).roots>1"),
+            "budget exceeded: any(meshes).roots>1: meshes[1].roots (moss) is 2, and 1 more");
   EXPECT_EQ(judged("meshes[\"moss\"].levels[2].error<1"),
             "budget exceeded: meshes[\"moss\"].levels[2].error<1: meshes[1].levels[2].error (moss) is 0.25");
   EXPECT_EQ(judged("count(meshes)==3"), "budget exceeded: count(meshes)==3: count(meshes) is 3");
@@ -191,8 +192,9 @@ TEST(Budget, OneErrorTellsAllThatHolds) {
   ASSERT_TRUE(broken.ok());
   const Error error = budget_error(*broken, "a.lode");
   EXPECT_EQ(error.code, ErrorCode::kCheckFailed);
-  EXPECT_EQ(error.message(),
-            "a.lode: budget exceeded: bytes>1: bytes is 1000; budget exceeded: totals.clusters>1: totals.clusters is 20");
+  EXPECT_EQ(
+      error.message(),
+      "a.lode: budget exceeded: bytes>1: bytes is 1000; budget exceeded: totals.clusters>1: totals.clusters is 20");
 }
 
 }  // namespace

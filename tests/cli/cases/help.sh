@@ -36,3 +36,16 @@ awk 'length($0) > 80 { print "columns: " $0 }' help.txt
 for word in help -h; do "$MESHLODE" "$word" | cmp - help.txt; done
 "$MESHLODE" build --help
 "$MESHLODE" --help
+# Short forms mean what the long ones do.
+"$MESHLODE" -V | cmp - <("$MESHLODE" --version) && echo "-V"
+cp "$DATA/crystal.glb" a.glb
+"$MESHLODE" build a.glb -o a.lode -q -j 1 -v >short.txt 2>&1; echo "exit $?"
+"$MESHLODE" build a.glb -o b.lode --quiet --jobs 1 --explain >long.txt 2>&1
+cmp short.txt long.txt && [ -s long.txt ] && cmp a.lode b.lode && echo "-q -j -v"
+"$MESHLODE" render a.lode -o a.png -v >short.txt 2>&1; "$MESHLODE" render a.lode -o a.png --explain >long.txt 2>&1
+cmp short.txt long.txt && grep -c '^plan of the asset' long.txt
+# Plain English: none of these phrases in any help or page.
+for verb in $verbs study; do "$MESHLODE" help "$verb"; done >all.txt
+for verb in meshlode $verbs; do "$MESHLODE" man "$verb"; done >>all.txt
+tr '\n' ' ' <all.txt | tr -s ' ' | grep -oE '(comma by comma|is told|are told|told of|not given|\bOf (a|an|the)\b|[a-z]+ a (triangle|coordinate|line|file) at most|(bytes|bits|triangles|row|line|case) a (triangle|mesh|file|scene|vertex|line)|\banew\b|\bmend[a-z]*\b|\bnobody\b|\bis no\b|\bare no\b|passed over)'
+grep -c . all.txt | awk '{ print ($1 > 500 ? "read" : "nothing read") }'
