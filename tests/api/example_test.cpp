@@ -3,6 +3,7 @@
 #include <fstream>
 #include <sstream>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -24,6 +25,26 @@ TEST(ApiDocs, ShowTheExampleThatIsCompiled) {
   const std::string body = code.substr(code.find("#include"));
   EXPECT_NE(page.find("```cpp\n" + body + "```"), std::string::npos)
       << "copy tests/api/example.cpp into docs/reference/api.md";
+}
+
+/// The C++ blocks of the page, each as it stands between its fences.
+std::vector<std::string> cpp_blocks(const std::string& page) {
+  std::vector<std::string> blocks;
+  const std::string begin = "```cpp\n";
+  for (std::size_t at = page.find(begin); at != std::string::npos; at = page.find(begin, at)) {
+    at += begin.size();
+    blocks.push_back(page.substr(at, page.find("```", at) - at));
+  }
+  return blocks;
+}
+
+TEST(ApiDocs, TheFirstFrameIsDrawnByTheProgramThatIsCompiled) {
+  const std::string code = read_text("tests/api/first_frame.cpp");
+  const std::vector<std::string> blocks = cpp_blocks(read_text("docs/tutorials/first-frame.md"));
+  EXPECT_EQ(blocks.size(), 5U);
+  for (const std::string& block : blocks) {
+    EXPECT_NE(code.find(block), std::string::npos) << "not in tests/api/first_frame.cpp:\n" << block;
+  }
 }
 
 TEST(ApiDocs, ShowTheCExampleThatIsCompiled) {
