@@ -154,7 +154,7 @@ struct MeshRecord {
   std::uint32_t level_count;               ///< levels, 0 the finest
   std::uint64_t source_triangles;          ///< after triangulation, before anything was dropped
   std::uint64_t source_vertices;           ///< before anything was dropped
-  std::uint64_t dropped_degenerate;        ///< triangles without area that are no part of the source
+  std::uint64_t dropped_degenerate;        ///< triangles without area that are not part of the source
   std::uint64_t dropped_duplicate;         ///< same positions, winding, stored attributes and material
   std::uint64_t dropped_repaired;          ///< by --repair: non-finite, out of range, degenerate, duplicate
   std::uint64_t grid_collapsed;            ///< triangles of level 0 that have zero area after quantization; they stay
@@ -292,8 +292,8 @@ constexpr std::uint32_t kPromisesAppearance = 2u;  ///< appearance errors too
 /// the distance of two points is Euclidean. texels leaves n out, position all but p.
 struct PromiseMeshRecord {
   std::uint32_t promises;          ///< kPromises…, the same in all meshes
-  float normal_object;             ///< object units of a unit normal; 0: normals are no part
-  float uv_object[kMaxUvSets][2];  ///< object units of a UV unit, along u and along v; 0 both: the set is no part
+  float normal_object;             ///< object units of a unit normal; 0: normals are not part
+  float uv_object[kMaxUvSets][2];  ///< object units of a UV unit, along u and along v; 0 both: the set is not part
   float level0_texels;             ///< how far quantization alone moves the surface so at most, object units
   float level0_appearance;         ///< the same; 0 without kPromisesAppearance
 };

@@ -136,7 +136,7 @@ typedef struct meshlode_mesh {
   uint32_t level_count;                        /**< levels, 0 the finest */
   uint64_t source_triangles;                   /**< before anything was dropped */
   uint64_t source_vertices;                    /**< before anything was dropped */
-  uint64_t dropped_degenerate;                 /**< triangles without area that are no part of the source */
+  uint64_t dropped_degenerate;                 /**< triangles without area that are not part of the source */
   uint64_t dropped_duplicate;                  /**< same positions, winding, stored attributes and material */
   uint64_t dropped_repaired;                   /**< by --repair: non-finite, out of range, degenerate, duplicate */
   uint64_t grid_collapsed;                     /**< triangles of level 0 without area on the grid; they stay */

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: MIT
 // The program of docs/tutorials/first-frame.md: an asset becomes a picture, with the runtime alone.
 #include <algorithm>
 #include <cmath>
