@@ -137,9 +137,9 @@ enum class UvErrorUnit : std::uint8_t {
 /// Which meshes are simplified as aggregates (foliage, grass, debris): pieces are merged so that a picture stays as
 /// much covered. Errors of such a mesh are of coverage (docs/guides/foliage.md).
 enum class AggregateChoice : std::uint8_t {
-  kNever,  ///< none
-  kAuto,   ///< meshes of many small loose pieces, and parts of meshes: the leaves of a tree, not its trunk. A part
-          ///< becomes a mesh of the asset, "tree#leaves", after those of the input
+  kNever,   ///< none
+  kAuto,    ///< meshes of many small loose pieces, and parts of meshes: the leaves of a tree, not its trunk. A part
+            ///< becomes a mesh of the asset, "tree#leaves", after those of the input
   kAlways,  ///< all pieces of at most 512 triangles
   kNamed,   ///< those of BuildOptions::aggregate_names
 };
