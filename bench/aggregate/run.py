@@ -173,7 +173,7 @@ def main():
     for key, table in tables.items():
         begin, end = f"<!-- {key}: begin -->", f"<!-- {key}: end -->"
         head, rest = text.split(begin)
-        text = head + begin + "\n" + table + "\n" + end + rest.split(end)[1]
+        text = head + begin + "\n\n" + table + "\n\n" + end + rest.split(end)[1]
     book.write_text(text)
     (ROOT / "docs/pictures/aggregates.svg").write_text(curves(found))
     shutil.copy(picture, ROOT / "docs/pictures/aggregates.png")
