@@ -21,6 +21,7 @@ cp tools/wasm/README.md "$source/tools/wasm/"
 cp include/meshlode/decode.glsl "$source/include/meshlode/"
 rm "$source/docs/mkdocs.yml" "$source/docs/Doxyfile"
 
+python3 -B tools/schema_pages.py "$source/docs/schemas"
 doxygen docs/Doxyfile
 printf '\nEvery function and record: [headers](../../api/index.html).\n' >>"$source/docs/reference/api.md"
 mkdocs build --quiet --strict --config-file docs/mkdocs.yml
