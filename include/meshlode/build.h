@@ -3,9 +3,14 @@
 /// The builder: arrays in memory, or a scene file, become the bytes of a .lode asset.
 ///
 /// \code
-///   meshlode::PrimitiveInput primitive{.positions = positions, .indices = indices};
-///   meshlode::MeshInput mesh{.name = "rock", .primitives = {&primitive, 1}};
-///   auto bytes = meshlode::build_asset({.meshes = {&mesh, 1}}, {});
+///   meshlode::PrimitiveInput primitive;
+///   primitive.positions = positions;
+///   primitive.indices = indices;
+///   meshlode::MeshInput mesh;
+///   mesh.primitives = {&primitive, 1};
+///   meshlode::SceneInput scene;
+///   scene.meshes = {&mesh, 1};
+///   const auto bytes = meshlode::build_asset(scene, {});
 ///   if (!bytes) puts(bytes.error().message().c_str());
 /// \endcode
 ///

@@ -7,7 +7,7 @@
 ///   if (!asset) { puts(asset.error().message().c_str()); return 1; }
 ///   const auto items = asset->select_view({.eye = {0, 1, 5}}, 1.0);
 ///   if (!items) { puts(items.error().message().c_str()); return 1; }
-///   for (const meshlode::DrawItem& item : *items) ...
+///   for (const meshlode::DrawItem& item : *items) draw(item);
 /// \endcode
 ///
 /// Units. *Mesh space* is the space of the source mesh, in its own ("object") units. Stored spheres and decoded
