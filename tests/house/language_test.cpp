@@ -36,7 +36,8 @@ constexpr Phrase kPhrases[] = {
      "point|frame|node|material|side|axis|corner|job|shard|setting)\\b(?! "
      "(is|are|has|can|may|without|covers|names)\\b)",
      "per, not a"},
-    {"(^|- |[.;:] )Of (a|an|the|these|those|what|its|each) [a-z]+ (it|they|that|which|the|only|all)\\b", "subject first"},
+    {"(^|- |[.;:] )Of (a|an|the|these|those|what|its|each) [a-z]+ (it|they|that|which|the|only|all)\\b",
+     "subject first"},
     {"\\b(is|are) no (code|fault|failure|finding|pattern|part|number|bound|triangle|manifold|aggregate|tests?|knob)\\b",
      "is not a"},
 };
