@@ -96,7 +96,7 @@ def main():
     for name in PICTURES:
         picture = folder / f"promise-{name}.png"
         (ROOT / "docs" / "pictures" / picture.name).write_bytes(picture.read_bytes())
-        shown.append(f"![{name}: full resolution, and cuts by position, texels and appearance](pictures/{picture.name})")
+        shown.append(f"![{name}: full resolution, and cuts by position, texels and appearance](../pictures/{picture.name})")
     page = ROOT / "docs/log/quality.md"
     before, _, rest = page.read_text().partition(BEGIN)
     _, _, after = rest.partition(END)

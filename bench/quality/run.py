@@ -221,7 +221,7 @@ def write_pictures(figures, models):
 
         path = ROOT / "docs/pictures" / f"quality-{model}.svg"
         path.write_text(plot.svg(model, curves("max", AT_MAX), curves("rms", AT_RMS)))
-        links.append(f"![{model}: triangles over true deviation](pictures/{path.name})\n")
+        links.append(f"![{model}: triangles over true deviation](../pictures/{path.name})\n")
     return "\n".join(links)
 
 

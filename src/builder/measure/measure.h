@@ -17,7 +17,7 @@ constexpr double kMeasuredMargin = 1.02;
 
 /// Sets error, deviation, normal_deviation and uv_deviation of the groups that are not terminal, in object units,
 /// degrees and UV units; errors never fall from fine to coarse (I4). Where errors come from (I7,
-/// docs/explanation/architecture.md):
+/// docs/reference/invariants.md):
 ///   kQem        the simplifier's own estimate, as the file stores it
 ///   kMeasured   the largest distance that was met between each level's whole surface and the source (measure_levels.h)
 ///   kCertified  an upper bound of the deviation
