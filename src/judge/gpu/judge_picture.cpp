@@ -291,7 +291,7 @@ Displacements find_displacements(const run::Asset& asset, const PictureSource& s
   };
   const auto to_source = [&](const PixelPoint& p) {
     const std::uint32_t mesh = asset.instances()[p.instance].mesh;
-    return distance(mesh < source.meshes.size() ? &source.meshes[mesh].tree : nullptr, p.point);
+    return distance(mesh < source.meshes.size() ? &*source.meshes[mesh].tree : nullptr, p.point);
   };
   const auto to_cut = [&](const PixelPoint& p) {
     const auto found = cut_of.find(p.instance);

@@ -11,9 +11,9 @@
 
 #include "base/output_files.h"
 #include "draw/gpu/vulkan/vulkan.h"
-#include "judge/gpu/cameras.h"
 #include "judge/gpu/judge_picture.h"
 #include "judge/metrics/metrics.h"
+#include "judge/pictures/cameras.h"
 #include "judge/validate/rules.h"
 #include "run/read/limits.h"
 

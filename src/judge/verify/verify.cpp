@@ -14,6 +14,7 @@
 #include "judge/verify/coverage_rule.h"
 #include "judge/verify/cuts.h"
 #include "judge/verify/deviations.h"
+#include "judge/verify/id_rule.h"
 #include "judge/verify/locked_borders.h"
 #include "judge/verify/promises.h"
 #include "judge/verify/source_parts.h"
@@ -303,6 +304,32 @@ void add_promises(const run::Asset& asset, const scene::Scene& source, const Ver
   }
 }
 
+/// Cameras that look at the whole scene, and as many close ones.
+constexpr std::uint32_t kIdCameras = 6;
+
+void add_ids(const run::Asset& asset, const scene::Scene& source, const VerifyOptions& options, Report& report) {
+  RuleLog log;
+  const std::vector<JudgedIds> judged =
+      check_ids(asset, source, std::min(options.cameras, kIdCameras), options.seed, log);
+  IdDistance total;
+  const JudgedIds* worst = nullptr;
+  for (const JudgedIds& picture : judged) {
+    total.pixels += picture.distance.pixels;
+    total.astray += picture.distance.astray;
+    total.farthest_px = std::max(total.farthest_px, picture.distance.farthest_px);
+    if (worst == nullptr || picture.distance.share() > worst->distance.share()) worst = &picture;
+  }
+  char text[200] = "pixels show their surface";
+  if (worst != nullptr) {
+    std::snprintf(text, sizeof text,
+                  "%.3f%% of pixels show another surface, none farther than %.1f px; at worst %.3f%% (%s, %g px)",
+                  100.0 * total.share(), total.farthest_px, 100.0 * worst->distance.share(), worst->camera.c_str(),
+                  worst->pixel_error);
+  }
+  report.add_check("I7", text, judged.size(), failures_of(log, {Rule::kV211}));
+  report.take(log);
+}
+
 }  // namespace
 
 VerifyReport verify_asset(const run::Asset& asset, const scene::Scene& whole, const VerifyOptions& options) {
@@ -324,6 +351,7 @@ VerifyReport verify_asset(const run::Asset& asset, const scene::Scene& whole, co
     add_deviations(asset, source, options, report);
     add_promises(asset, source, options, report);
     add_coverage(asset, options, report);
+    add_ids(asset, source, options, report);
   } else {
     report.add_check("I1", "not reached: " + clusters.error().message(), 0, 1);
     if (report.out.finding_count == 0) {

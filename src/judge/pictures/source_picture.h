@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -19,15 +20,17 @@ namespace meshlode::judge {
 /// One mesh of the source, mesh space.
 struct SourceSurface {
   Surface surface;
+  std::vector<std::uint32_t> material;     ///< of each triangle, of the scene; empty: 0
   std::vector<std::uint8_t> double_sided;  ///< of each triangle; empty: none is
-  TriangleTree tree;
+  std::optional<TriangleTree> tree;        ///< where distances are asked for, not pictures alone
 
-  explicit SourceSurface(Surface s, std::vector<std::uint8_t> sides = {})
-      : surface(std::move(s)), double_sided(std::move(sides)), tree(surface) {}
+  explicit SourceSurface(Surface s, bool has_tree = true) : surface(std::move(s)) {
+    if (has_tree) tree.emplace(surface);
+  }
 };
 
 /// Every mesh of the scene, in order.
-[[nodiscard]] std::vector<SourceSurface> source_surfaces(const scene::Scene& scene);
+[[nodiscard]] std::vector<SourceSurface> source_surfaces(const scene::Scene& scene, bool have_trees = true);
 
 /// A mesh of the source with what is painted on it, in the units of the asset's chosen promise.
 struct PaintedSurface {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "judge/gpu/source_picture.h"
+#include "judge/pictures/source_picture.h"
 
 #include <algorithm>
 #include <utility>
@@ -40,19 +40,17 @@ void project_chunk(const run::Asset& asset, const SourceSurface& source, const d
 
 }  // namespace
 
-std::vector<SourceSurface> source_surfaces(const scene::Scene& scene) {
+std::vector<SourceSurface> source_surfaces(const scene::Scene& scene, bool have_trees) {
   std::vector<SourceSurface> out;
   out.reserve(scene.meshes.size());
   for (const scene::SourceMesh& mesh : scene.meshes) {
-    std::vector<std::uint8_t> sides;
-    for (const scene::Primitive& primitive : mesh.primitives) {
-      const bool is_double_sided =
-          primitive.material.value < scene.materials.size() && scene.materials[primitive.material.value].double_sided;
-      sides.insert(sides.end(), primitive.indices.size() / 3, is_double_sided ? 1 : 0);
+    std::vector<std::uint32_t> primitives;
+    SourceSurface& part = out.emplace_back(surface_of_source(mesh, &primitives), have_trees);
+    for (const std::uint32_t primitive : primitives) {
+      const std::uint32_t material = mesh.primitives[primitive].material.value;
+      part.material.push_back(material);
+      part.double_sided.push_back(material < scene.materials.size() && scene.materials[material].double_sided ? 1 : 0);
     }
-    Surface surface = surface_of_source(mesh);
-    if (sides.size() != surface.triangles.size()) sides.clear();
-    out.emplace_back(std::move(surface), std::move(sides));
   }
   return out;
 }

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "judge/pictures/id_distance.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/parallel.h"
+
+namespace meshlode::judge {
+
+namespace {
+
+/// The pixels of each surface as runs in rows, so that the nearest is found row by row, exactly.
+class RunsOfIds {
+ public:
+  explicit RunsOfIds(const IdPicture& picture) : width_(picture.width), rows_(picture.height) {
+    parallel_for_each_index(rows_.size(), 16, [&](std::size_t y) {
+      std::vector<Run>& row = rows_[y];
+      const std::uint64_t* id = &picture.id[y * width_];
+      for (std::uint32_t x = 0; x < width_; ++x) {
+        if (id[x] == IdPicture::kBackground) continue;
+        if (x > 0 && id[x] == id[x - 1])
+          row.back().last = x;
+        else
+          row.push_back({id[x], x, x});
+      }
+      std::sort(row.begin(), row.end(), comes_before);
+    });
+  }
+
+  /// From the middle of one pixel to the middle of another, pixels; infinite where there is none.
+  [[nodiscard]] double distance(std::uint64_t id, std::uint32_t x, std::uint32_t y) const {
+    double best2 = std::numeric_limits<double>::infinity();
+    for (std::size_t down = 0; down < rows_.size(); ++down) {
+      const auto dy = static_cast<double>(down);
+      if (dy * dy >= best2) break;
+      for (const std::size_t row : {y + down, y - down}) {  // above the top it wraps around, and is no row
+        if (row >= rows_.size()) continue;
+        const double dx = distance_in_row(rows_[row], id, x);
+        best2 = std::min(best2, dx * dx + dy * dy);
+      }
+    }
+    return std::sqrt(best2);
+  }
+
+ private:
+  struct Run {
+    std::uint64_t id;
+    std::uint32_t first, last;
+  };
+  static bool comes_before(const Run& a, const Run& b) { return a.id != b.id ? a.id < b.id : a.first < b.first; }
+
+  static double distance_in_row(const std::vector<Run>& row, std::uint64_t id, std::uint32_t x) {
+    // The first run of the id that begins right of x, and the one before it.
+    const auto right = std::upper_bound(row.begin(), row.end(), Run{id, x, x}, comes_before);
+    double best = std::numeric_limits<double>::infinity();
+    if (right != row.end() && right->id == id) best = right->first - x;
+    if (right != row.begin() && std::prev(right)->id == id) {
+      const std::uint32_t last = std::prev(right)->last;
+      best = std::min(best, x > last ? double{x - last * 1.0} : 0.0);
+    }
+    return best;
+  }
+
+  std::uint32_t width_;
+  std::vector<std::vector<Run>> rows_;
+};
+
+/// From a pixel's surface in `from` to the same in another picture; 0 where it is within `allowed`.
+double distance_beyond(const IdPicture& from, const RunsOfIds& to, std::uint32_t x, std::uint32_t y, double allowed) {
+  const std::uint64_t id = from.id[std::size_t{y} * from.width + x];
+  if (id == IdPicture::kBackground) return 0.0;
+  const double distance = to.distance(id, x, y);
+  return distance > allowed ? distance : 0.0;
+}
+
+}  // namespace
+
+IdDistance measure_ids(const IdPicture& source, const IdPicture& cut) {
+  const RunsOfIds source_runs(source), cut_runs(cut);
+  std::vector<IdDistance> rows(source.height);
+  parallel_for_each_index(rows.size(), 4, [&](std::size_t row) {
+    const auto y = static_cast<std::uint32_t>(row);
+    for (std::uint32_t x = 0; x < source.width; ++x) {
+      const std::size_t at = row * source.width + x;
+      if (source.id[at] == IdPicture::kBackground && cut.id[at] == IdPicture::kBackground) continue;
+      ++rows[row].pixels;
+      if (source.id[at] == cut.id[at]) continue;
+      const double allowed = std::max(source.allowed_px[at], cut.allowed_px[at]);
+      const double to_edge = std::min({x + 0.5, source.width - x - 0.5, y + 0.5, source.height - y - 0.5});
+      if (to_edge <= allowed) continue;
+      const double beyond = std::max(distance_beyond(source, cut_runs, x, y, allowed),
+                                     distance_beyond(cut, source_runs, x, y, allowed));
+      if (beyond == 0.0) continue;
+      ++rows[row].astray;
+      rows[row].farthest_px = std::max(rows[row].farthest_px, beyond);
+    }
+  });
+  IdDistance out;
+  for (const IdDistance& row : rows) {
+    out.pixels += row.pixels;
+    out.astray += row.astray;
+    out.farthest_px = std::max(out.farthest_px, row.farthest_px);
+  }
+  return out;
+}
+
+}  // namespace meshlode::judge
