@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "base/system.h"
+#include "base/try.h"
 
 namespace meshlode {
 
@@ -14,8 +15,7 @@ std::optional<FileId> find_file_id(const std::filesystem::path& path) {
 }
 
 Result<MappedFile> MappedFile::open(const std::filesystem::path& path) {
-  const auto mapping = system::map_file(path);
-  if (!mapping) return mapping.error();
+  TRY_LET(mapping, system::map_file(path));
   MappedFile file;
   file.bytes_ = mapping->bytes;
   file.id_ = mapping->id;

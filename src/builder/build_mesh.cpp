@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/release.h"
+#include "base/try.h"
 #include "builder/dag/aggregate_dag.h"
 #include "builder/dag/build_dag.h"
 #include "builder/encode/attribute_steps.h"
@@ -117,8 +118,7 @@ Result<BuiltMesh> build_mesh(const Source& from, std::size_t index, const Survey
   PrepareOptions preparing = prepare_options(own);
   if (options.hooks != nullptr) preparing.separates_needles = options.hooks->separates_needles;
   preparing.keeps_flat_normals = is_painted && options.promise == format::Promise::kAppearance;
-  Result<PreparedMesh> mesh = prepare_mesh(source, plan.layout, preparing);
-  if (!mesh) return mesh.error();
+  TRY_LET(mesh, prepare_mesh(source, plan.layout, preparing));
   const UvUnits uv_units = is_painted ? uv_units_of(source, plan.layout, found.extents) : UvUnits{};
   from.free_mesh(index);
   built.clock.end(Stage::kPrepare);
@@ -144,8 +144,7 @@ Result<BuiltMesh> build_mesh(const Source& from, std::size_t index, const Survey
       build_hierarchy(*dag, *mesh, options.hooks != nullptr ? options.hooks->enclosing_ball : enclosing_ball);
   built.clock.end(Stage::kHierarchy);
 
-  Result<EncodedMesh> encoded = encode_mesh(*mesh, *dag, hierarchy, encoding);
-  if (!encoded) return encoded.error();
+  TRY_LET(encoded, encode_mesh(*mesh, *dag, hierarchy, encoding));
   built.encoded = std::move(*encoded);
   built.encoded.record.error_tier = own.error_tier;
   if (promises != 0) {

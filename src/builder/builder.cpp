@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "base/parallel.h"
+#include "base/try.h"
 #include "builder/aggregate/mesh_parts.h"
 #include "builder/build_mesh.h"
 #include "builder/gather.h"
@@ -28,10 +29,10 @@ namespace {
 
 /// Refuses what cannot be built, before any mesh is.
 Status check_build(const scene::Scene& scene, const PipelineOptions& options) {
-  if (const Status s = check_options(options, scene.meshes.size()); !s) return s.error();
+  TRY(check_options(options, scene.meshes.size()));
   for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
     const std::string label = mesh_label(scene.meshes[i], i);
-    if (const Status counts = check_mesh_counts(count_mesh(scene.meshes[i]), label); !counts) return counts.error();
+    TRY(check_mesh_counts(count_mesh(scene.meshes[i]), label));
   }
   return Ok{};
 }
@@ -75,12 +76,10 @@ Result<std::vector<BuiltMesh>> build_meshes(const Source& from, const PipelineOp
 
 Result<std::vector<std::uint8_t>> build_asset_of(const Source& given, PipelineOptions options,
                                                  const ProgressCallback& progress, PipelineReport& report) {
-  if (const Status s = check_build(given.scene, options); !s) return s.error();
+  TRY(check_build(given.scene, options));
   std::vector<AggregateDecision> aggregates = decide_aggregates(given.scene, options);
-  const Result<MemoryFit> fit = check_memory(given.scene, options, aggregates, report);
-  if (!fit) return fit.error();
-  Result<Survey> found = survey(given.scene, options, std::move(aggregates));
-  if (!found) return found.error();
+  TRY_LET(fit, check_memory(given.scene, options, aggregates, report));
+  TRY_LET(found, survey(given.scene, options, std::move(aggregates)));
   const std::vector<scene::MeshPart> parts = plan_parts(given.scene, found->aggregates, options);
   std::optional<scene::Scene> split;  // what is the caller's own stays as it is
   if (!parts.empty()) scene::split_parts(given.owned != nullptr ? *given.owned : split.emplace(given.scene), parts);

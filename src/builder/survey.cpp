@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "base/try.h"
 #include "builder/aggregate/material_looks.h"
 #include "builder/stage_options.h"
 
@@ -41,8 +42,7 @@ Result<Survey> survey(const scene::Scene& scene, const PipelineOptions& options,
     add_materials(scene.meshes[i], found.aggregates[i], is_used);
   }
   if (!found.has_aggregates()) return found;
-  Result<CoarseMaterials> coarse = derive_materials(scene, is_used, looks);
-  if (!coarse) return coarse.error();
+  TRY_LET(coarse, derive_materials(scene, is_used, looks));
   found.coarse = std::move(*coarse);
   return found;
 }

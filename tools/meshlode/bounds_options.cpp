@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bounds_options.h"
+#include "base/try.h"
 
 #include <cmath>
 #include <string>
@@ -37,19 +38,18 @@ void add_bounds_options(OptionParser& parser, BoundsOptions& options) {
 }
 
 Result<run::AttributeBounds> make_bounds(const BoundsOptions& options, const run::Asset& asset) {
-  if (Status status = check_number("--normal-error", options.normal_error); !status) return status.error();
+  TRY(check_number("--normal-error", options.normal_error));
   if (options.normal_error && *options.normal_error > 180.0) {
     return Error{ErrorCode::kUsage, "--normal-error", "give degrees, 0 to 180"};
   }
-  if (Status status = check_number("--uv-error", options.uv_error); !status) return status.error();
+  TRY(check_number("--uv-error", options.uv_error));
   run::AttributeBounds bounds;
   if (options.normal_error) bounds.normal_degrees = *options.normal_error;
   if (options.uv_error) bounds.uv = *options.uv_error;
   for (std::size_t m = 0; m < asset.meshes().size(); ++m) {
     const run::AttributeBounds own = run::bounds_for(bounds, asset.meshes()[m]);
     if (options.normal_error && own.normal_degrees == *options.normal_error) {
-      const Status status = check_measured("--normal-error", asset, m, &format::GroupRecord::normal_deviation);
-      if (!status) return status.error();
+      TRY_LET(status, check_measured("--normal-error", asset, m, &format::GroupRecord::normal_deviation));
     }
     if (options.uv_error && own.uv == *options.uv_error) {
       if (const Status status = check_measured("--uv-error", asset, m, &format::GroupRecord::uv_deviation); !status) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "budget_options.h"
+#include "base/try.h"
 
 #include <utility>
 
@@ -31,16 +32,13 @@ int print_broken(const std::string& where, const std::vector<app::BrokenConditio
 
 Status check_asset_budget(const std::filesystem::path& path, const std::vector<app::Condition>& conditions,
                           std::uint64_t max_decoded) {
-  const Result<run::Asset> asset = run::Asset::open(path, max_decoded);
-  if (!asset) return asset.error();
+  TRY_LET(asset, run::Asset::open(path, max_decoded));
   app::AssetInfo info = app::describe_asset(*asset);
   if (app::mentions(conditions, "byte_map")) {
-    Result<app::ByteMap> byte_map = app::map_bytes(*asset);
-    if (!byte_map) return byte_map.error();
+    TRY_LET(byte_map, app::map_bytes(*asset));
     info.byte_map = std::move(*byte_map);
   }
-  const auto broken = app::judge_budget(conditions, app::info_json(*asset, info, true));
-  if (!broken) return broken.error();
+  TRY_LET(broken, app::judge_budget(conditions, app::info_json(*asset, info, true)));
   if (!broken->empty()) return app::budget_error(*broken, path.string());
   return Ok{};
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "draw_pair.h"
+#include "base/try.h"
 
 #include <utility>
 
@@ -25,12 +26,10 @@ Result<Drawn> draw_one(const run::Asset& asset, const run::Camera& camera, doubl
   const std::vector<draw::MaterialTextures> materials = draw::read_material_textures(asset);
   const draw::AlphaMasks masks = draw::load_alpha_masks(asset, materials, images);
   if (!masks.damage) return masks.damage.error();
-  const auto visibility = draw::draw_cut(asset, *cut, camera, masks);
-  if (!visibility) return visibility.error();
+  TRY_LET(visibility, draw::draw_cut(asset, *cut, camera, masks));
   const draw::TextureSet textures = draw::load_textures(asset, materials, images);
   if (!textures.damage) return textures.damage.error();
-  auto image = draw::shade_view(asset, *cut, camera, *visibility, draw::View::kShaded, textures);
-  if (!image) return image.error();
+  TRY_LET(image, draw::shade_view(asset, *cut, camera, *visibility, draw::View::kShaded, textures));
   Drawn drawn{std::move(*image), 0, cut->size()};
   for (const run::ClusterInstance& entry : *cut) {
     drawn.triangles += asset.clusters()[entry.cluster.value].triangle_count();
@@ -44,12 +43,9 @@ Result<Drawn> draw_one(const run::Asset& asset, const run::Camera& camera, doubl
 
 Result<app::PictureChange> draw_pair(const PairToDraw& pair, const CameraOptions& options,
                                      std::vector<std::string>& warnings) {
-  const Result<run::Camera> camera = make_camera(options, pair.before);
-  if (!camera) return camera.error();
-  const auto before = draw_one(pair.before, *camera, options.pixel_error, pair.max_decoded, warnings);
-  if (!before) return before.error();
-  const auto after = draw_one(pair.after, *camera, options.pixel_error, pair.max_decoded, warnings);
-  if (!after) return after.error();
+  TRY_LET(camera, make_camera(options, pair.before));
+  TRY_LET(before, draw_one(pair.before, *camera, options.pixel_error, pair.max_decoded, warnings));
+  TRY_LET(after, draw_one(pair.after, *camera, options.pixel_error, pair.max_decoded, warnings));
   app::PictureChange picture;
   picture.width = camera->width;
   picture.height = camera->height;

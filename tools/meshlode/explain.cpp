@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "explain.h"
+#include "base/try.h"
 
 #include <algorithm>
 
@@ -45,12 +46,9 @@ std::string describe_settings(const app::Settled& settled, const std::vector<app
 
 Result<std::string> explain_build(const std::vector<app::SettingLayer>& layers, const builder::PipelineOptions& options,
                                   const scene::Scene& scene) {
-  const auto settled = app::settle(layers);
-  if (!settled) return settled.error();
-  const auto meshes = app::settle_meshes(layers, names_of_meshes(scene));
-  if (!meshes) return meshes.error();
-  const auto plan = app::plan_scene(scene, options);
-  if (!plan) return plan.error();
+  TRY_LET(settled, app::settle(layers));
+  TRY_LET(meshes, app::settle_meshes(layers, names_of_meshes(scene)));
+  TRY_LET(plan, app::plan_scene(scene, options));
   return describe_settings(*settled, *meshes, scene) + app::describe_plan(*plan);
 }
 

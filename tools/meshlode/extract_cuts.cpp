@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "extract_cuts.h"
+#include "base/try.h"
 
 #include <algorithm>
 #include <cmath>
@@ -48,8 +49,7 @@ CutLevel cut_at_error(const CutRequest& request, const run::AttributeBounds& bou
 
 Status choose_by_camera(const CutRequest& request, const run::AttributeBounds& bounds, const run::Asset& asset,
                         const std::vector<bool>& chosen, std::vector<MeshCuts>& out) {
-  const auto camera = make_camera(request.camera, asset);
-  if (!camera) return camera.error();
+  TRY_LET(camera, make_camera(request.camera, asset));
   std::vector<run::UniformCut> cuts = app::choose_camera_cuts(asset, *camera, request.camera.pixel_error, bounds);
   for (std::size_t m = 0; m < out.size(); ++m) {
     if (chosen[m]) out[m].levels.push_back(make_level(asset, std::move(cuts[m])));
@@ -107,14 +107,12 @@ Status choose_chains(const CutRequest& request, const run::AttributeBounds& boun
   std::vector<double> errors;
   std::vector<double> ratios;
   if (request.lod_errors) {
-    auto list = parse_list("--lod-errors", *request.lod_errors);
-    if (!list) return list.error();
+    TRY_LET(list, parse_list("--lod-errors", *request.lod_errors));
     errors = std::move(*list);
     const bool rises = std::adjacent_find(errors.begin(), errors.end(), std::greater_equal<>()) == errors.end();
     if (!rises || errors.front() < 0.0) return usage("--lod-errors", "give rising errors, 0 or more");
   } else if (request.lod_ratios) {
-    auto list = parse_list("--lod-ratios", *request.lod_ratios);
-    if (!list) return list.error();
+    TRY_LET(list, parse_list("--lod-ratios", *request.lod_ratios));
     ratios = std::move(*list);
     const bool falls = std::adjacent_find(ratios.begin(), ratios.end(), std::less_equal<>()) == ratios.end();
     if (!falls || ratios.front() > 1.0 || ratios.back() < 0.0) {
@@ -124,8 +122,7 @@ Status choose_chains(const CutRequest& request, const run::AttributeBounds& boun
     double ratio = 1.0;
     for (std::uint32_t k = 0; k < *request.lods; ++k, ratio *= 0.5) ratios.push_back(ratio);
   }
-  const auto camera = make_camera(request.camera, asset);
-  if (!camera) return camera.error();
+  TRY_LET(camera, make_camera(request.camera, asset));
   for (std::size_t m = 0; m < out.size(); ++m) {
     if (!chosen[m]) continue;
     const MeshId mesh(m);
@@ -190,11 +187,10 @@ Result<std::vector<MeshCuts>> choose_cuts(const CutRequest& request, const run::
                                           const std::vector<bool>& chosen) {
   std::vector<MeshCuts> cuts(asset.meshes().size());
   for (std::size_t m = 0; m < cuts.size(); ++m) cuts[m].mesh = MeshId(m);
-  const Result<run::AttributeBounds> bounds = make_bounds(request.bounds, asset);
-  if (!bounds) return bounds.error();
+  TRY_LET(bounds, make_bounds(request.bounds, asset));
   Status status = Ok{};
   if (request.level) {
-    if (const Status there = check_level(*request.level, asset, chosen); !there) return there.error();
+    TRY(check_level(*request.level, asset, chosen));
   }
   if (request.has_camera()) {
     status = choose_by_camera(request, *bounds, asset, chosen, cuts);

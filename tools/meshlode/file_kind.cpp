@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "file_kind.h"
+#include "base/try.h"
 
 #include <cstring>
 #include <span>
@@ -55,7 +56,7 @@ Status check_may_be_asset(const std::string& path) {
 }
 
 Result<run::Asset> open_asset(const std::string& path, std::uint64_t max_decoded) {
-  if (const Status asset = check_may_be_asset(path); !asset) return asset.error();
+  TRY(check_may_be_asset(path));
   return run::Asset::open(path, max_decoded);
 }
 

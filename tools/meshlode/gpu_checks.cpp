@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "gpu_checks.h"
+#include "base/try.h"
 
 #include <cstdio>
 #include <span>
@@ -88,8 +89,7 @@ Status verify_with_gpu(run::Asset& asset, const scene::Scene& source, const GpuO
   judge.files = &output_files();
   judge.max_decoded = options.max_decoded;
   if (!options.path.empty()) {
-    const auto file = MappedFile::open(options.path);
-    if (!file) return file.error();
+    TRY_LET(file, MappedFile::open(options.path));
     output_files().keep(file->id());
     const std::span<const std::uint8_t> bytes = file->bytes();
     const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
@@ -102,8 +102,7 @@ Status verify_with_gpu(run::Asset& asset, const scene::Scene& source, const GpuO
   if (!options.out_folder.empty()) {
     if (const Status free = output_files().claim(report_path); !free) return free;
   }
-  const auto verified = judge::verify_on_gpu(asset, source, judge);
-  if (!verified) return verified.error();
+  TRY_LET(verified, judge::verify_on_gpu(asset, source, judge));
   if (options.is_explained) {
     std::fprintf(stderr, "passes of %s\n%s", verified->device.name.c_str(), verified->plan.c_str());
   }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "info_page.h"
+#include "base/try.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -47,17 +48,15 @@ Status can_write_info_page() {
 
 Result<std::string> info_page(const run::Asset& asset, const std::string& path,
                               const std::optional<app::ByteMap>& byte_map, std::uint64_t max_page_bytes) {
-  if (const Status can = can_write_info_page(); !can) return can.error();
+  TRY(can_write_info_page());
   app::ViewerInput input;
   const std::string name = std::filesystem::path(path).filename().string();
   input.title = name;
   input.runtime = kRuntime;
   input.byte_map = byte_map;
   input.max_page_bytes = max_page_bytes;
-  const auto strips = repacked(asset, format::Codec::kStrips);
-  if (!strips) return strips.error();
-  const auto smaller = run::Asset::from_bytes(*strips);
-  if (!smaller) return smaller.error();
+  TRY_LET(strips, repacked(asset, format::Codec::kStrips));
+  TRY_LET(smaller, run::Asset::from_bytes(*strips));
   const bool is_own = are_readable(asset) && stored_bytes(asset) <= stored_bytes(*smaller);
   if (!is_own) input.file = &asset;
   return app::viewer_page(is_own ? asset : *smaller, input);

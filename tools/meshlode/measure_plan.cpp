@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "measure_plan.h"
+#include "base/try.h"
 
 #include <algorithm>
 #include <chrono>
@@ -33,8 +34,7 @@ struct Loaded {
 };
 
 Result<Loaded> load(std::vector<std::uint8_t> bytes, std::uint64_t max_decoded) {
-  auto asset = run::Asset::from_vector(std::move(bytes));
-  if (!asset) return asset.error();
+  TRY_LET(asset, run::Asset::from_vector(std::move(bytes)));
   draw::ImageBudget images(max_decoded);
   const auto materials = draw::read_material_textures(*asset);
   Loaded out{std::move(*asset), {}, {}};
@@ -49,8 +49,7 @@ Status count_bytes(const run::Asset& asset, MeasuredAsset& out) {
   for (const format::SectionEntry& section : asset.sections()) {
     out.sections.emplace_back(app::section_name(section.id), section.bytes);
   }
-  const auto map = app::map_bytes(asset);
-  if (!map) return map.error();
+  TRY_LET(map, app::map_bytes(asset));
   const app::PageBits& bits = map->total;
   for (const auto& [name, count] : {std::pair("positions", bits.positions),
                                     {"normals", bits.normals},
@@ -162,10 +161,8 @@ Result<std::array<Loaded, 2>> build_rounds(const scene::Scene& scene,
       bytes[side] = std::move(*built);
     }
   }
-  auto planned = load(std::move(bytes[0]), measure.max_decoded);
-  if (!planned) return planned.error();
-  auto all = load(std::move(bytes[1]), measure.max_decoded);
-  if (!all) return all.error();
+  TRY_LET(planned, load(std::move(bytes[0]), measure.max_decoded));
+  TRY_LET(all, load(std::move(bytes[1]), measure.max_decoded));
   return std::array<Loaded, 2>{std::move(*planned), std::move(*all)};
 }
 
@@ -184,22 +181,20 @@ Result<PlanMeasurement> measure_plan(const scene::Scene& scene, const builder::P
   };
   keep_all(all);
   for (builder::MeshOptions& own : all.mesh_options) keep_all(own);
-  auto loaded = build_rounds(scene, {options, all}, measure, out);
-  if (!loaded) return loaded.error();
+  TRY_LET(loaded, build_rounds(scene, {options, all}, measure, out));
   for (std::size_t side = 0; side < 2; ++side) {
-    if (const Status counted = count_bytes((*loaded)[side].asset, out.assets[side]); !counted) return counted.error();
+    TRY(count_bytes((*loaded)[side].asset, out.assets[side]));
   }
   out.is_same_content =
       std::ranges::equal((*loaded)[0].asset.header().content_hash, (*loaded)[1].asset.header().content_hash);
-  const Result<run::Camera> camera = make_camera({}, (*loaded)[0].asset);
-  if (!camera) return camera.error();
+  TRY_LET(camera, make_camera({}, (*loaded)[0].asset));
   out.width = camera->width;
   out.height = camera->height;
   bool has_device = true;
   for (std::uint32_t round = 0; round < measure.rounds; ++round) {
     for (std::size_t side = 0; side < 2; ++side) {
       MeasuredAsset& asset = out.assets[side];
-      if (const Status drawn = draw_on_cpu((*loaded)[side], *camera, asset); !drawn) return drawn.error();
+      TRY(draw_on_cpu((*loaded)[side], *camera, asset));
       has_device = has_device && draw_on_gpu((*loaded)[side], *camera, measure, out, asset);
     }
   }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "source_scene.h"
+#include "base/try.h"
 
 #include <algorithm>
 #include <utility>
@@ -46,8 +47,7 @@ Status check_source_options(const std::string& verb, const std::string& asset_pa
 }
 
 Result<scene::Scene> import_source(const run::Asset& asset, const SourceOptions& options, std::uint64_t max_decoded) {
-  auto allowed = parse_allow_outside(options.allow_outside);
-  if (!allowed) return allowed.error();
+  TRY_LET(allowed, parse_allow_outside(options.allow_outside));
   std::vector<FileId> files_read;
   const app::MetaInfo meta = app::read_meta(asset.meta_json());
   Result<scene::Scene> source =

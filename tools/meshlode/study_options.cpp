@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "study_options.h"
+#include "base/try.h"
 
 #include "lab/experiment/experiment.h"
 
@@ -13,8 +14,7 @@ void add_study_options(OptionParser& parser, StudyWords& words) {
 }
 
 Result<std::optional<builder::BuildHooks>> hooks_of(const StudyWords& words) {
-  const auto care = lab::parse_care(words.care);
-  if (!care) return care.error();
+  TRY_LET(care, lab::parse_care(words.care));
   lab::Experiment experiment;
   experiment.care = *care;
   experiment.simplifier = value_in(lab::kSimplifierNames, words.simplifier).value_or(experiment.simplifier);

@@ -23,6 +23,7 @@
 #include "app/settings/settings.h"
 #include "base/byte_size.h"
 #include "base/printable.h"
+#include "base/try.h"
 #include "batch_files.h"
 #include "batch_options.h"
 #include "batch_show.h"
@@ -98,8 +99,7 @@ struct BuildCommand {
 /// Before anything is built: TBB loads further libraries as it starts, which are not to be told apart by.
 Status find_program(BuildCommand& command) {
   if (command.words.cache_folder().empty() && command.words.manifest.empty()) return Ok{};
-  const auto program = app::find_program_id();
-  if (!program) return program.error();
+  TRY_LET(program, app::find_program_id());
   command.program = *program;
   return Ok{};
 }
@@ -107,11 +107,9 @@ Status find_program(BuildCommand& command) {
 /// Opens the cache where one is wanted. \pre find_program()
 Status open_cache(BuildCommand& command) {
   const std::string folder = command.words.cache_folder();
-  const Result<std::uint64_t> limit = command.words.limit();
-  if (!limit) return limit.error();
+  TRY_LET(limit, command.words.limit());
   if (folder.empty()) return Ok{};
-  auto store = app::Store::open(folder, {*limit, command.words.dry_run});
-  if (!store) return store.error();
+  TRY_LET(store, app::Store::open(folder, {*limit, command.words.dry_run}));
   command.cache.emplace(std::move(*store), command.program);
   command.options.cache = &*command.cache;
   return Ok{};
@@ -120,8 +118,7 @@ Status open_cache(BuildCommand& command) {
 /// Of all jobs those that this command is to do.
 Result<std::vector<Job>> take_share(const std::vector<Job>& jobs, BuildCommand& command) {
   if (command.words.shard.empty()) return jobs;
-  const auto shard = app::parse_shard(command.words.shard);
-  if (!shard) return shard.error();
+  TRY_LET(shard, app::parse_shard(command.words.shard));
   if (command.words.fail_fast) {
     return Error{ErrorCode::kUsage, "--shard",
                  "give this or --fail-fast: shards know nothing of each other's failures"};
@@ -260,30 +257,25 @@ Result<std::uint64_t> parse_max_memory(const std::string& text) {
 
 Status set_options(const BuildWords& words, const LimitWords& limits, app::BatchOptions& options) {
   const app::SettingLayer given = given_settings(words);
-  const Result<app::Settled> settled = app::settle({&given, 1});
-  if (!settled) return settled.error();
+  TRY_LET(settled, app::settle({&given, 1}));
   options.pipeline = settled->options;
   options.pipeline.looks = &image_looks();
   options.settings_of = [words](const Job& job) { return settings_for(words, job.input, job.root); };
   options.import.repair = options.pipeline.repair;
   options.import.linear_colors = options.pipeline.linear_colors;
   options.import.scene = words.scene;
-  const Result<std::uint64_t> memory = parse_max_memory(limits.max_memory);
-  if (!memory) return memory.error();
+  TRY_LET(memory, parse_max_memory(limits.max_memory));
   options.pipeline.max_memory = *memory;
-  const Result<std::uint64_t> decoded = parse_max_decoded(limits.max_decoded);
-  if (!decoded) return decoded.error();
+  TRY_LET(decoded, parse_max_decoded(limits.max_decoded));
   options.import.max_decoded = *decoded;
-  auto allowed = parse_allow_outside(limits.allow_outside);
-  if (!allowed) return allowed.error();
+  TRY_LET(allowed, parse_allow_outside(limits.allow_outside));
   options.import.allow_outside = std::move(*allowed);
   return Ok{};
 }
 
 /// --fail-if: each asset is looked at when it is there.
 Status set_budget(BuildCommand& command) {
-  auto conditions = read_budget_option(command.fail_if, app::info_schema());
-  if (!conditions) return conditions.error();
+  TRY_LET(conditions, read_budget_option(command.fail_if, app::info_schema()));
   if (conditions->empty()) return Ok{};
   command.options.check_asset = [budget = std::move(*conditions), max_decoded = command.options.import.max_decoded](
                                     const fs::path& asset) { return check_asset_budget(asset, budget, max_decoded); };

@@ -13,6 +13,7 @@
 #include "app/doctor/asset_faults.h"
 #include "app/doctor/diagnosis.h"
 #include "base/file.h"
+#include "base/try.h"
 #include "doctor_words.h"
 #include "options.h"
 #include "run/read/asset.h"
@@ -25,8 +26,7 @@ namespace {
 
 /// By its first four bytes, whatever it is called.
 Result<bool> is_asset(const std::string& path) {
-  const Result<MappedFile> file = MappedFile::open(path);
-  if (!file) return file.error();
+  TRY_LET(file, MappedFile::open(path));
   const std::span<const std::uint8_t> bytes = file->bytes();
   std::uint32_t magic = 0;
   if (bytes.size() < sizeof(magic)) return false;
@@ -36,8 +36,7 @@ Result<bool> is_asset(const std::string& path) {
 
 /// `sound`: whether pages and images, which the tables do not speak of, are what was written.
 Result<app::DoctorReport> examine_asset(const std::string& path, std::uint64_t max_decoded, Status& sound) {
-  const Result<run::Asset> asset = run::Asset::open(path, max_decoded);
-  if (!asset) return asset.error();
+  TRY_LET(asset, run::Asset::open(path, max_decoded));
   sound = app::check_stored_bytes(*asset);
   app::DoctorReport report;
   report.is_asset = true;
@@ -49,11 +48,9 @@ Result<app::DoctorReport> examine_asset(const std::string& path, std::uint64_t m
 }
 
 Result<app::DoctorReport> examine(const std::string& path, const scene::ImportOptions& options, Status& sound) {
-  const Result<bool> asset = is_asset(path);
-  if (!asset) return asset.error();
+  TRY_LET(asset, is_asset(path));
   if (*asset) return examine_asset(path, options.max_decoded, sound);
-  const Result<scene::Scene> scene = scene::import_scene(path, options);
-  if (!scene) return scene.error();
+  TRY_LET(scene, scene::import_scene(path, options));
   return report_on_scene(*scene);
 }
 

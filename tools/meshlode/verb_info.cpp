@@ -7,6 +7,7 @@
 #include "app/page/viewer_page.h"
 #include "app/report/info.h"
 #include "base/byte_size.h"
+#include "base/try.h"
 #include "budget_options.h"
 #include "file_kind.h"
 #include "info_page.h"
@@ -63,8 +64,7 @@ Status claim_page(const run::Asset& asset, const PageOptions& page) {
 Status write_page(const run::Asset& asset, const std::string& path, const std::optional<app::ByteMap>& byte_map,
                   const PageOptions& options) {
   if (!options.path) return Ok{};
-  const auto page = info_page(asset, path, byte_map, options.max_page_bytes);
-  if (!page) return page.error();
+  TRY_LET(page, info_page(asset, path, byte_map, options.max_page_bytes));
   return write_text(*options.path, *page);
 }
 

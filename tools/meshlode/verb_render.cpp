@@ -8,6 +8,7 @@
 
 #include "base/byte_size.h"
 #include "base/json_writer.h"
+#include "base/try.h"
 #include "bounds_options.h"
 #include "camera_options.h"
 #include "draw/gpu/render.h"
@@ -208,8 +209,7 @@ Result<Drawn> draw_on_cpu(const run::Asset& asset, const run::Camera& camera, co
                           const run::AttributeBounds& bounds, draw::ImageBudget& images) {
   std::vector<run::ClusterInstance> cut;
   if (options.error) {
-    auto uniform = uniform_cut(asset, *options.error, options.is_relative, bounds);
-    if (!uniform) return uniform.error();
+    TRY_LET(uniform, uniform_cut(asset, *options.error, options.is_relative, bounds));
     cut = std::move(*uniform);
   } else {
     auto seen =
@@ -219,17 +219,15 @@ Result<Drawn> draw_on_cpu(const run::Asset& asset, const run::Camera& camera, co
   }
   const std::vector<draw::MaterialTextures> materials = draw::read_material_textures(asset);
   const draw::AlphaMasks masks = draw::load_alpha_masks(asset, materials, images);
-  if (const Status complete = print_warnings(masks.warnings, masks.damage, options); !complete) return complete.error();
+  TRY(print_warnings(masks.warnings, masks.damage, options));
   const auto view = static_cast<draw::View>(view_number(options.view));
   if (options.explain) std::fprintf(stderr, "%s", describe_cpu_passes(asset, masks, view).c_str());
-  auto visibility = draw::draw_cut(asset, cut, camera, masks);
-  if (!visibility) return visibility.error();
+  TRY_LET(visibility, draw::draw_cut(asset, cut, camera, masks));
   draw::TextureSet textures;
   if (view == draw::View::kShaded) textures = draw::load_textures(asset, materials, images);
   if (const Status complete = print_warnings(textures.warnings, textures.damage, options); !complete)
     return complete.error();
-  auto image = draw::shade_view(asset, cut, camera, *visibility, view, textures);
-  if (!image) return image.error();
+  TRY_LET(image, draw::shade_view(asset, cut, camera, *visibility, view, textures));
   return Drawn{std::move(cut), std::move(*visibility), std::move(*image)};
 }
 

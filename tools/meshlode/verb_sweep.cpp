@@ -19,6 +19,7 @@
 #include "base/nearest_name.h"
 #include "base/output_files.h"
 #include "base/printable.h"
+#include "base/try.h"
 #include "camera_options.h"
 #include "doctor_words.h"
 #include "lab/page/numbers.h"
@@ -51,8 +52,7 @@ Result<std::vector<lab::Wish>> parse_wishes(const std::string& text) {
   std::vector<lab::Wish> wishes;
   for (std::size_t at = 0; at <= text.size() && !text.empty();) {
     const std::size_t end = std::min(text.find(';', at), text.size());
-    auto wish = lab::parse_wish(std::string_view(text).substr(at, end - at));
-    if (!wish) return wish.error();
+    TRY_LET(wish, lab::parse_wish(std::string_view(text).substr(at, end - at)));
     wishes.push_back(std::move(*wish));
     at = end + 1;
   }
@@ -151,20 +151,16 @@ Status set_options(const SweepWords& words, lab::SweepOptions& options) {
       return Error{ErrorCode::kUsage, "--budget", "give a time such as 90s, 5m or 1h" + got_text(*words.budget)};
     options.budget = *seconds;
   }
-  auto wishes = parse_wishes(words.want.value_or(""));
-  if (!wishes) return wishes.error();
+  TRY_LET(wishes, parse_wishes(words.want.value_or("")));
   options.wishes = std::move(*wishes);
   if (words.knobs) {
-    auto knobs = parse_knobs(*words.knobs);
-    if (!knobs) return knobs.error();
+    TRY_LET(knobs, parse_knobs(*words.knobs));
     options.knobs = std::move(*knobs);
   }
-  const Result<std::uint64_t> decoded = parse_max_decoded(words.max_decoded);
-  if (!decoded) return decoded.error();
+  TRY_LET(decoded, parse_max_decoded(words.max_decoded));
   options.max_decoded = *decoded;
   if (words.max_decoded != kDefaultMaxDecodedText) options.max_decoded_text = words.max_decoded;
-  auto allowed = parse_allow_outside(words.allow_outside);
-  if (!allowed) return allowed.error();
+  TRY_LET(allowed, parse_allow_outside(words.allow_outside));
   options.allow_outside = std::move(*allowed);
   options.scene = words.scene;
   options.report = words.report;
@@ -174,8 +170,7 @@ Status set_options(const SweepWords& words, lab::SweepOptions& options) {
   };
   options.diagnose_scene = diagnose_scene;
   // Before any thread is started: libraries that are loaded later are not this program's.
-  const auto program = app::find_program_id();
-  if (!program) return program.error();
+  TRY_LET(program, app::find_program_id());
   options.program_id = to_hex(*program);
   // Not its path: that may be another program's by the time of the last round.
   options.program = "/proc/self/exe";

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "base/printable.h"
+#include "base/try.h"
 
 namespace meshlode::app {
 
@@ -57,8 +58,7 @@ class Scanner {
     skip_spaces();
     if (is_at_end()) return Error{ErrorCode::kUsage, kOption, "is empty: give a condition"};
     while (true) {
-      auto condition = scan_condition();
-      if (!condition) return condition.error();
+      TRY_LET(condition, scan_condition());
       conditions.push_back(std::move(*condition));
       if (is_at_end()) return conditions;
       if (!take(',')) return expected("a comma and another condition, or the end");
@@ -89,11 +89,11 @@ class Scanner {
     skip_spaces();
     const std::size_t first = at_;
     Condition condition;
-    if (Status path = scan_path(condition.path); !path) return path.error();
+    TRY(scan_path(condition.path));
     const auto relation = scan_relation();
     if (!relation) return expected("one of > >= < <= == !=");
     condition.relation = *relation;
-    if (Status value = scan_literal(condition.value); !value) return value.error();
+    TRY(scan_literal(condition.value));
     std::size_t last = at_;
     while (last > first && is_space(text_[last - 1])) --last;
     condition.text = text_.substr(first, last - first);

@@ -11,6 +11,7 @@
 
 #include "base/nearest_name.h"
 #include "base/printable.h"
+#include "base/try.h"
 
 namespace meshlode::app {
 
@@ -373,12 +374,11 @@ std::string BrokenCondition::message() const {
 }
 
 Result<std::vector<Condition>> read_budget(std::string_view text, std::string_view schema) {
-  auto conditions = parse_conditions(text);
-  if (!conditions) return conditions.error();
+  TRY_LET(conditions, parse_conditions(text));
   if (conditions->empty()) return std::move(*conditions);
   const Json root = Json::parse(schema.begin(), schema.end());
   for (Condition& condition : *conditions) {
-    if (Status known = SchemaWalk(root).check(condition); !known) return known.error();
+    TRY(SchemaWalk(root).check(condition));
   }
   return std::move(*conditions);
 }
@@ -389,8 +389,7 @@ Result<std::vector<BrokenCondition>> judge_budget(const std::vector<Condition>& 
   const Json json = Json::parse(document.begin(), document.end(), nullptr, false);
   if (json.is_discarded()) return Error{ErrorCode::kInvalid, "", "the document is no JSON"};
   for (const Condition& condition : conditions) {
-    auto judged = DocumentWalk(condition).judge(json);
-    if (!judged) return judged.error();
+    TRY_LET(judged, DocumentWalk(condition).judge(json));
     if (*judged) broken.push_back(std::move(**judged));
   }
   return broken;

@@ -8,6 +8,7 @@
 #include "app/export/float_positions.h"
 #include "app/export/glb_file.h"
 #include "base/json_writer.h"
+#include "base/try.h"
 
 namespace meshlode::app {
 namespace {
@@ -70,8 +71,7 @@ Status add_mesh(const run::Asset& asset, MeshId mesh, std::span<const ColoredSet
   std::vector<std::size_t> materials;
   for (const ColoredSet& set : sets) {
     if (set.mesh != mesh || set.clusters.empty()) continue;
-    auto primitives = gather_cut(asset, mesh, set.clusters);
-    if (!primitives) return primitives.error();
+    TRY_LET(primitives, gather_cut(asset, mesh, set.clusters));
     parts.push_back(std::move(*primitives));
     materials.push_back(material_of(set, document));
   }
@@ -80,8 +80,7 @@ Status add_mesh(const run::Asset& asset, MeshId mesh, std::span<const ColoredSet
   WrittenMesh written{mesh, Vec3d(record.origin[0], record.origin[1], record.origin[2]) - baked, {}};
   for (std::size_t i = 0; i < parts.size(); ++i) {
     for (const CutPrimitive& primitive : parts[i]) {
-      auto one = write_primitive(asset, record, primitive, baked, document.binary);
-      if (!one) return one.error();
+      TRY_LET(one, write_primitive(asset, record, primitive, baked, document.binary));
       one->material = materials[i];
       written.primitives.push_back(*one);
     }
@@ -219,7 +218,7 @@ void write_nodes(JsonWriter& w, const run::Asset& asset, const Document& documen
 Result<std::vector<std::uint8_t>> export_colored_sets(const run::Asset& asset, std::span<const ColoredSet> sets) {
   Document document;
   for (std::size_t m = 0; m < asset.meshes().size(); ++m) {
-    if (Status status = add_mesh(asset, MeshId(m), sets, document); !status) return status.error();
+    TRY(add_mesh(asset, MeshId(m), sets, document));
   }
   // A mesh without an instance that can be drawn has no node, and a list without elements is not glTF.
   std::erase_if(document.meshes, [&](const WrittenMesh& mesh) {

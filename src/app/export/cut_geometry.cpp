@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "base/try.h"
 #include "run/unpack/unpack.h"
 
 namespace meshlode::app {
@@ -36,8 +37,7 @@ Result<Soup> decode_cut(const run::Asset& asset, std::uint32_t channel_count, st
     const format::ClusterRecord& record = asset.clusters()[id.value];
     const std::uint32_t page_id = asset.groups()[record.coarser_group].page;
     if (page_id != loaded) {
-      auto bytes = run::load_page(asset, PageId(page_id));
-      if (!bytes) return bytes.error();
+      TRY_LET(bytes, run::load_page(asset, PageId(page_id)));
       page.emplace(std::move(*bytes));
       loaded = page_id;
     }
@@ -86,8 +86,7 @@ Result<std::vector<CutPrimitive>> gather_cut(const run::Asset& asset, MeshId mes
                    "cluster " + std::to_string(id) + (is_member ? " is in the cut twice" : " is not of this mesh")};
     }
   }
-  auto decoded = decode_cut(asset, format::channel_count(record), clusters);
-  if (!decoded) return decoded.error();
+  TRY_LET(decoded, decode_cut(asset, format::channel_count(record), clusters));
   const Soup& soup = *decoded;
   const std::vector<std::uint32_t> representative = find_representatives(soup);
 

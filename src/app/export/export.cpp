@@ -28,6 +28,7 @@
 #include "base/guarded.h"
 #include "base/hash.h"
 #include "base/json_handle.h"
+#include "base/try.h"
 #include "format/names.h"
 
 namespace meshlode::app {
@@ -157,10 +158,8 @@ Status Exporter::carry_buffers() {
   std::vector<GlbBinary::Range> ranges;
   if (const auto buffers = document_.find("buffers"); buffers != document_.end()) {
     for (const Json& buffer : *buffers) {
-      const auto blob = blob_of(buffer);
-      if (!blob) return blob.error();
-      const auto range = carry_blob(**blob);
-      if (!range) return range.error();
+      TRY_LET(blob, blob_of(buffer));
+      TRY_LET(range, carry_blob(**blob));
       ranges.push_back(*range);
     }
     document_.erase("buffers");
@@ -184,12 +183,10 @@ Status Exporter::carry_images() {
   constexpr std::size_t kLongestName = 4096;  // a name that many images share must not be multiplied by them
   for (Json& image : array_of(document_, "images")) {
     if (!image.contains("blob")) continue;
-    const auto blob = blob_of(image);
-    if (!blob) return blob.error();
+    TRY_LET(blob, blob_of(image));
     const format::BlobRecord& record = **blob;
     const std::span<const std::uint8_t> bytes = asset_.blob_bytes(record);
-    const auto range = carry_blob(record);
-    if (!range) return range.error();
+    TRY_LET(range, carry_blob(record));
     image["bufferView"] = add_view(document_, *range);
     const std::string_view mime_type = asset_.string(record.mime_type);
     if (!image.contains("mimeType"))
@@ -277,8 +274,7 @@ Status Exporter::add_primitives(const Member& member, const Json* source, std::s
                                 const Vec3d& translation, Json& json) {
   const auto extensions = extensions_by_material(source);
   for (const CutPrimitive& primitive : primitives) {
-    auto made = primitives_.write(member.record, primitive, member.origin() - translation);
-    if (!made) return made.error();
+    TRY_LET(made, primitives_.write(member.record, primitive, member.origin() - translation));
     const auto known = extensions.find(made->value("material", Json()));
     if (known != extensions.end()) (*made)["extensions"] = *known->second;
     json["primitives"].push_back(std::move(*made));
@@ -294,8 +290,7 @@ Status Exporter::add_mesh(std::size_t mesh, std::span<const MeshId> member_ids) 
   for (const MeshId id : member_ids) {
     Member member{asset_.meshes()[id.value], chains_[id.value]};
     for (const std::vector<ClusterId>& cut : member.chain.cuts) {
-      auto primitives = gather_cut(asset_, id, cut);
-      if (!primitives) return primitives.error();
+      TRY_LET(primitives, gather_cut(asset_, id, cut));
       if (!primitives->empty()) member.levels.push_back(std::move(*primitives));
     }
     if (member.levels.empty()) continue;
@@ -314,8 +309,7 @@ Status Exporter::add_mesh(std::size_t mesh, std::span<const MeshId> member_ids) 
     Json json = {{"primitives", Json::array()}};
     for (const Member& member : members) {
       const auto& level = member.levels[std::min(k, member.levels.size() - 1)];
-      const Status added = add_primitives(member, source, level, exported.translation, json);
-      if (!added) return added.error();
+      TRY_LET(added, add_primitives(member, source, level, exported.translation, json));
     }
     const std::string name = k == 0 || exported.name.empty() ? exported.name : level_name(exported.name, k);
     if (!name.empty()) json["name"] = name;
@@ -464,20 +458,19 @@ Result<std::vector<std::uint8_t>> Exporter::run() {
   if (nests_deeper_than(text, kMaxDepth)) return malformed("JSON nests too deep");
   document_ = text.empty() ? Json::object() : Json::parse(text, nullptr, false);
   if (!document_.is_object()) return malformed("not a JSON object");
-  const Status arrays = check_arrays(document_, {"accessors", "bufferViews", "buffers", "extensionsRequired",
-                                                 "extensionsUsed", "images", "nodes", "textures"});
-  if (!arrays) return arrays.error();
-  if (const Status s = carry_buffers(); !s) return s.error();
-  if (const Status s = carry_images(); !s) return s.error();
+  TRY_LET(arrays, check_arrays(document_, {"accessors", "bufferViews", "buffers", "extensionsRequired",
+                                           "extensionsUsed", "images", "nodes", "textures"}));
+  TRY(carry_buffers());
+  TRY(carry_images());
   move_texture_sources();
-  if (const Status s = complete_materials(); !s) return s.error();
+  TRY(complete_materials());
   exported_.reserve(asset_.meshes().size());
   std::vector<std::vector<MeshId>> members(origins_.size());
   for (std::size_t m = 0; m < origins_.size(); ++m) members[origins_[m]].emplace_back(m);
   for (std::size_t m = 0; m < members.size(); ++m) {
-    if (auto status = add_mesh(m, members[m]); !status) return status.error();
+    TRY(add_mesh(m, members[m]));
   }
-  if (const Status s = attach_meshes(); !s) return s.error();
+  TRY(attach_meshes());
   finish_document();
   // Names of records need not be UTF-8; what is not is replaced, never refused.
   const std::string json = document_.dump(-1, ' ', false, Json::error_handler_t::replace);
@@ -521,7 +514,7 @@ Result<std::vector<std::uint8_t>> export_glb_lods(const run::Asset& asset, std::
       if (is_known) bytes += run::count_decoded_bytes(asset, cut);  // others are refused where they are gathered
     }
   }
-  if (Status status = run::check_decoded_bytes(asset, bytes); !status) return status.error();
+  TRY(run::check_decoded_bytes(asset, bytes));
   return guarded({}, [&]() -> Result<std::vector<std::uint8_t>> {
     try {
       return Exporter(asset, chain_per_mesh).run();

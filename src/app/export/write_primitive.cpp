@@ -11,6 +11,7 @@
 #include "app/export/float_positions.h"
 #include "base/gltf_textures.h"
 #include "base/json_handle.h"
+#include "base/try.h"
 
 namespace meshlode::app {
 
@@ -123,7 +124,7 @@ Result<GltfJson> PrimitiveWriter::write(const format::MeshRecord& record, const 
   const run::DecodedCluster& vertices = primitive.vertices;
   const std::size_t count = vertices.vertex_count;
   GltfJson attributes = GltfJson::object();
-  if (const Status s = add_positions(record, vertices, baked, attributes); !s) return s.error();
+  TRY(add_positions(record, vertices, baked, attributes));
   run::ClusterAttributes floats;
   run::decode_attributes(record, vertices, floats);
   // No NORMAL means flat normals in glTF, which is what the other two modes ask for.

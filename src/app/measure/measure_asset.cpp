@@ -10,6 +10,7 @@
 #include "app/measure/read_dag.h"
 #include "app/report/read_meta.h"
 #include "app/rewrite/rewrite_asset.h"
+#include "base/try.h"
 #include "builder/encode/encode.h"
 #include "builder/hierarchy/bvh.h"
 #include "builder/hierarchy/lod_bounds.h"
@@ -63,8 +64,7 @@ Result<bool> is_aggregate(const builder::LodDag& dag) {
 /// 0 is what it did.
 Status measure_dag(const format::MeshRecord& record, const scene::SourceMesh& source,
                    const builder::AttributeLayout& layout, format::ErrorTier tier, builder::LodDag& dag) {
-  const auto aggregate = is_aggregate(dag);
-  if (!aggregate) return aggregate.error();
+  TRY_LET(aggregate, is_aggregate(dag));
   const bool needs_source = tier != format::ErrorTier::kQem && !*aggregate && !dag.triangles.empty();
   builder::PrepareOptions options;
   options.frame = builder::GridFrame{{record.origin[0], record.origin[1], record.origin[2]},
@@ -72,8 +72,7 @@ Status measure_dag(const format::MeshRecord& record, const scene::SourceMesh& so
   Status status = Ok{};
   for (const bool separates : {true, false}) {
     options.separates_needles = separates;
-    const Result<builder::PreparedMesh> mesh = builder::prepare_mesh(source, layout, options);
-    if (!mesh) return mesh.error();
+    TRY_LET(mesh, builder::prepare_mesh(source, layout, options));
     if (!needs_source) {
       const auto form = builder::canonical_form(*mesh, dag);
       status = form ? builder::measure(*mesh, tier, dag) : Status(form.error());
@@ -88,10 +87,8 @@ Status measure_dag(const format::MeshRecord& record, const scene::SourceMesh& so
 Status measure_mesh(const run::Asset& asset, MeshId id, const scene::SourceMesh& source, format::ErrorTier tier,
                     Tables& tables) {
   format::MeshRecord& record = tables.meshes[id.value];
-  const auto layout = layout_of(record);
-  if (!layout) return layout.error();
-  Result<builder::LodDag> dag = read_dag(asset, id, *layout);
-  if (!dag) return dag.error();
+  TRY_LET(layout, layout_of(record));
+  TRY_LET(dag, read_dag(asset, id, *layout));
   if (const Status measured = measure_dag(record, source, *layout, tier, *dag); !measured) return measured;
 
   record.error_tier = tier;
@@ -122,7 +119,7 @@ format::Codec codec_of(const run::Asset& asset, const MetaInfo& meta) {
 
 Result<std::vector<std::uint8_t>> measure_asset(const run::Asset& asset, const scene::Scene& given,
                                                 format::ErrorTier tier) {
-  if (const Status size = run::check_decoded_bytes(asset, run::count_decoded_bytes(asset)); !size) return size.error();
+  TRY(run::check_decoded_bytes(asset, run::count_decoded_bytes(asset)));
   if (!asset.promises().empty()) {
     return Error{ErrorCode::kUnsupported, "promises",
                  "the asset keeps more than positions, and what it keeps depends on the tier: build it with the tier"};

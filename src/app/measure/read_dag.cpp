@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "base/try.h"
 #include "run/decode/decode.h"
 #include "run/unpack/unpack.h"
 
@@ -60,8 +61,7 @@ Status read_pages(const run::Asset& asset, MeshId mesh, LodDag& dag) {
   for (std::size_t p = 0; p < asset.pages().size(); ++p) {
     const format::PageRecord& stored = asset.pages()[p];
     if (asset.groups()[stored.first_group].mesh != mesh.value) continue;
-    const auto page = run::load_page(asset, PageId{p});
-    if (!page) return page.error();
+    TRY_LET(page, run::load_page(asset, PageId{p}));
     for (std::uint32_t id = stored.first_cluster; id < stored.first_cluster + stored.cluster_count; ++id) {
       run::decode_cluster(asset, *page, ClusterId(id), decoded);
       run::decode_attributes(record, decoded, attributes);
@@ -118,7 +118,7 @@ Result<LodDag> read_dag(const run::Asset& asset, MeshId mesh, const AttributeLay
   dag.vertex_position.reserve(vertices);
   dag.vertex_attributes.reserve(vertices * layout.stride());
   dag.triangles.reserve(triangles);
-  if (const Status status = read_pages(asset, mesh, dag); !status) return status.error();
+  TRY(read_pages(asset, mesh, dag));
   return dag;
 }
 

@@ -12,6 +12,7 @@
 #include "app/page/text_forms.h"
 #include "app/report/info.h"
 #include "base/json_writer.h"
+#include "base/try.h"
 #include "format/names.h"
 
 namespace meshlode::app {
@@ -204,8 +205,7 @@ Result<std::string> viewer_page(const run::Asset& asset, const ViewerInput& inpu
                    std::string("is stored with ") + format::name_of(codec) + ", which a page cannot read"};
     }
   }
-  const auto chosen = choose_pages(asset, input.max_page_bytes);
-  if (!chosen) return chosen.error();
+  TRY_LET(chosen, choose_pages(asset, input.max_page_bytes));
   const std::array<std::pair<std::string_view, std::string>, 7> holes{{
       {"@TITLE@", escape_html(input.title)},
       {"@LICENCES@", std::string(page_licences())},

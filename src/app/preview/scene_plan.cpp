@@ -10,6 +10,7 @@
 
 #include "app/preview/estimate.h"
 #include "base/parallel.h"
+#include "base/try.h"
 #include "builder/aggregate/aggregate_choice.h"
 #include "builder/encode/encode.h"
 #include "builder/encode/uv_grid.h"
@@ -50,8 +51,7 @@ class MeshPlanner {
     out_.is_whole = counts.triangles > 0 && counts.triangles <= options_.max_cluster_triangles &&
                     counts.vertices <= options_.max_cluster_vertices;
     out_.layout = plan_.layout;
-    const auto grid = builder::plan_grid(mesh_, builder::prepare_options(own_));
-    if (!grid) return grid.error();
+    TRY_LET(grid, builder::plan_grid(mesh_, builder::prepare_options(own_)));
     out_.grid = grid->grid;
     facts_ = size_facts(mesh_, *grid);
     const SizeEstimate size = estimate(plan_.layout);

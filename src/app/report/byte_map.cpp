@@ -6,6 +6,7 @@
 
 #include <meshlode/page.h>
 
+#include "base/try.h"
 #include "run/unpack/unpack.h"
 
 namespace meshlode::app {
@@ -67,8 +68,7 @@ Result<ByteMap> map_bytes(const run::Asset& asset) {
   ByteMap map;
   for (std::size_t p = 0; p < asset.pages().size(); ++p) {
     const format::PageRecord& record = asset.pages()[p];
-    const auto page = run::load_page(asset, PageId(p));
-    if (!page) return page.error();
+    TRY_LET(page, run::load_page(asset, PageId(p)));
     map.stored_page_bytes += record.stored_bytes;
     const format::MeshRecord& mesh = asset.meshes()[asset.groups()[record.first_group].mesh];
     std::vector<std::uint64_t> page_bits;  // by level

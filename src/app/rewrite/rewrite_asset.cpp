@@ -4,6 +4,7 @@
 #include <span>
 #include <utility>
 
+#include "base/try.h"
 #include "builder/write/repack.h"
 #include "run/decode/decode.h"
 #include "run/unpack/unpack.h"
@@ -13,8 +14,8 @@ namespace meshlode::app {
 Result<std::vector<std::uint8_t>> rewrite_asset(const run::Asset& asset, const Rewrite& rewrite) {
   std::uint64_t page_bytes = 0;
   for (const format::PageRecord& page : asset.pages()) page_bytes += page.bytes;
-  if (const Status status = run::check_decoded_bytes(asset, page_bytes); !status) return status.error();
-  if (const Status status = run::check_content_hash(asset); !status) return status.error();
+  TRY(run::check_decoded_bytes(asset, page_bytes));
+  TRY(run::check_content_hash(asset));
 
   builder::RepackInput input;
   for (const format::SectionEntry& entry : asset.sections()) {
@@ -22,18 +23,15 @@ Result<std::vector<std::uint8_t>> rewrite_asset(const run::Asset& asset, const R
     input.sections.push_back({entry, other.empty() ? asset.section_bytes(entry) : other});
   }
   input.version = asset.header().version;
-  const auto content_hash = run::hash_asset_content(asset, rewrite.other);
-  if (!content_hash) return content_hash.error();
+  TRY_LET(content_hash, run::hash_asset_content(asset, rewrite.other));
   input.content_hash = *content_hash;
   input.meta_json = rewrite.meta_json;
   input.load_page = [&](std::size_t p) -> Result<std::vector<std::uint8_t>> {
-    const auto page = run::load_page(asset, PageId{p});
-    if (!page) return page.error();
+    TRY_LET(page, run::load_page(asset, PageId{p}));
     return std::vector<std::uint8_t>(page->bytes().begin(), page->bytes().end());
   };
   input.codec = rewrite.codec;
-  auto bytes = builder::repack_asset(input);
-  if (!bytes) return bytes.error();
+  TRY_LET(bytes, builder::repack_asset(input));
 
   const auto written = run::Asset::from_bytes(*bytes);
   const Status same = written ? run::check_content_hash(*written) : Status(written.error());

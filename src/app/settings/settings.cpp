@@ -9,6 +9,7 @@
 #include "base/glob.h"
 #include "base/nearest_name.h"
 #include "base/printable.h"
+#include "base/try.h"
 #include "builder/aggregate/aggregate_choice.h"
 #include "builder/plan/attributes.h"
 #include "builder/plan/plan.h"
@@ -303,10 +304,10 @@ std::string find_fault(Setting setting, std::string_view word) {
 Result<Settled> settle(std::span<const SettingLayer> layers) {
   Settling settling;
   for (const SettingLayer& layer : layers) {
-    if (const Status added = settling.add(saying_of(layer)); !added) return added.error();
+    TRY(settling.add(saying_of(layer)));
     for (const SettingLayer::MeshRule& rule : layer.mesh_rules) {
       Settling alone;
-      if (const Status sound = alone.add(saying_of(layer, rule)); !sound) return sound.error();
+      TRY(alone.add(saying_of(layer, rule)));
     }
   }
   return Settled{options_of(settling.words()), settling.words()};
@@ -314,8 +315,7 @@ Result<Settled> settle(std::span<const SettingLayer> layers) {
 
 Result<std::vector<SettledMesh>> settle_meshes(std::span<const SettingLayer> layers,
                                                std::span<const std::string> mesh_names) {
-  const Result<Settled> whole = settle(layers);
-  if (!whole) return whole.error();
+  TRY_LET(whole, settle(layers));
   const bool has_rules =
       std::any_of(layers.begin(), layers.end(), [](const SettingLayer& layer) { return !layer.mesh_rules.empty(); });
   bool is_any = false;
@@ -323,11 +323,11 @@ Result<std::vector<SettledMesh>> settle_meshes(std::span<const SettingLayer> lay
   for (std::size_t i = 0; has_rules && i < mesh_names.size(); ++i) {
     Settling settling;
     for (const SettingLayer& layer : layers) {
-      if (const Status added = settling.add(saying_of(layer)); !added) return added.error();
+      TRY(settling.add(saying_of(layer)));
       for (const SettingLayer::MeshRule& rule : layer.mesh_rules) {
         if (!is_match(rule.glob, mesh_names[i])) continue;
         is_any = true;
-        if (const Status added = settling.add(saying_of(layer, rule)); !added) return added.error();
+        TRY(settling.add(saying_of(layer, rule)));
       }
     }
     SettledMesh& mesh = out.emplace_back();
@@ -343,8 +343,7 @@ Result<std::vector<SettledMesh>> settle_meshes(std::span<const SettingLayer> lay
 
 Status set_mesh_options(std::span<const SettingLayer> layers, std::span<const std::string> mesh_names,
                         builder::PipelineOptions& options) {
-  Result<std::vector<SettledMesh>> meshes = settle_meshes(layers, mesh_names);
-  if (!meshes) return meshes.error();
+  TRY_LET(meshes, settle_meshes(layers, mesh_names));
   options.mesh_options.clear();
   for (const SettledMesh& mesh : *meshes) options.mesh_options.push_back(mesh.options);
   return Ok{};

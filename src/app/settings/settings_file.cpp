@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "base/nearest_name.h"
+#include "base/try.h"
 #include "scene/import/json.h"
 
 namespace meshlode::app {
@@ -88,9 +89,9 @@ class FileReader {
     if (!root) return Error{ErrorCode::kInvalid, layer_.from, root.error().detail};
     if (!root->is_object()) return Error{ErrorCode::kInvalid, layer_.from, "is no object of settings"};
     for (const JsonMember& member : *root->object()) {
-      if (Status s = read_member(member); !s) return s.error();
+      TRY(read_member(member));
     }
-    if (const auto sound = settle({&layer_, 1}); !sound) return sound.error();
+    TRY(settle({&layer_, 1}));
     return std::move(layer_);
   }
 
@@ -180,12 +181,10 @@ Result<std::vector<SettingLayer>> read_settings_files(const fs::path& scene, con
     const fs::path path = folder / kSettingsFileName;
     std::error_code ec;
     if (fs::symlink_status(path, ec).type() == fs::file_type::not_found) continue;
-    const auto file = MappedFile::open(path);
-    if (!file) return file.error();
+    TRY_LET(file, MappedFile::open(path));
     files_read.push_back(file->id());
     const std::span<const std::uint8_t> bytes = file->bytes();
-    auto layer = parse_settings({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, path.string());
-    if (!layer) return layer.error();
+    TRY_LET(layer, parse_settings({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, path.string()));
     layers.push_back(std::move(*layer));
   }
   return layers;

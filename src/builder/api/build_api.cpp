@@ -15,6 +15,7 @@
 
 #include "base/guarded.h"
 #include "base/output_files.h"
+#include "base/try.h"
 #include "builder/api/scene_input.h"
 #include "builder/builder.h"
 #include "builder/preset.h"
@@ -69,8 +70,8 @@ Status check_numbers(const BuildOptions& options) {
 }
 
 Result<builder::PipelineOptions> make_pipeline_options(const BuildOptions& options) {
-  if (Status status = check_choices(options); !status) return status.error();
-  if (Status status = check_numbers(options); !status) return status.error();
+  TRY(check_choices(options));
+  TRY(check_numbers(options));
   builder::PipelineOptions pipeline;
   pipeline.preset = options.preset;
   pipeline.error_tier = options.error_tier.value_or(builder::settings_of(options.preset).error_tier);
@@ -143,8 +144,7 @@ class Callbacks {
 };
 
 Result<std::vector<std::uint8_t>> run_pipeline(scene::Scene&& scene, const BuildOptions& options) {
-  const auto pipeline = make_pipeline_options(options);
-  if (!pipeline) return pipeline.error();
+  TRY_LET(pipeline, make_pipeline_options(options));
   Callbacks callbacks(options);
   if (!callbacks.may_begin()) return callbacks.reason();
   const builder::ProgressCallback progress = [&](const builder::ProgressEvent& event) {
@@ -172,8 +172,7 @@ Status write_result(Result<std::vector<std::uint8_t>> bytes, OutputFiles& files,
 
 Result<std::vector<std::uint8_t>> build_asset(const SceneInput& scene, const BuildOptions& options) {
   return guarded({}, [&]() -> Result<std::vector<std::uint8_t>> {
-    auto made = builder::make_scene(scene, options.repair);
-    if (!made) return made.error();
+    TRY_LET(made, builder::make_scene(scene, options.repair));
     if (options.repair) scene::repair_scene(*made);
     return run_pipeline(std::move(*made), options);
   });
@@ -197,8 +196,7 @@ Status build_file(const std::filesystem::path& input, const std::filesystem::pat
     import_options.max_decoded = options.max_decoded_bytes;
     std::vector<FileId> files_read;
     import_options.files_read = &files_read;
-    auto scene = scene::import_scene(input, import_options);
-    if (!scene) return scene.error();
+    TRY_LET(scene, scene::import_scene(input, import_options));
     OutputFiles files;
     files.keep(files_read);
     if (Status status = files.claim(output); !status) return status;

@@ -19,6 +19,7 @@
 
 #include "base/guarded.h"
 #include "base/output_files.h"
+#include "base/try.h"
 
 namespace meshlode {
 namespace {
@@ -56,8 +57,8 @@ Status check_table(const void* first, std::size_t count, const std::string& wher
 }
 
 Result<PrimitiveInput> view(const meshlode_primitive_input& in, const std::string& where) {
-  if (Status status = check_table(&in, in.vertex_count, where + ".vertex_count"); !status) return status.error();
-  if (Status status = check_table(in.indices, in.triangle_count, where + ".indices"); !status) return status.error();
+  TRY(check_table(&in, in.vertex_count, where + ".vertex_count"));
+  TRY(check_table(in.indices, in.triangle_count, where + ".indices"));
   PrimitiveInput out;
   out.positions = numbers(in.positions, 3, in.vertex_count);
   out.positions_double = numbers(in.positions_double, 3, in.vertex_count);
@@ -96,8 +97,7 @@ Status view_meshes(const meshlode_scene_input& scene, SceneViews& out) {
     if (!has_all) return has_all;
     std::vector<PrimitiveInput>& primitives = out.primitives.emplace_back();
     for (std::size_t p = 0; p < mesh.primitive_count; ++p) {
-      auto primitive = view(mesh.primitives[p], where + "." + at("primitives", p));
-      if (!primitive) return primitive.error();
+      TRY_LET(primitive, view(mesh.primitives[p], where + "." + at("primitives", p)));
       primitives.push_back(*primitive);
     }
     out.meshes.push_back({text_of(mesh.name), {}});
@@ -108,10 +108,10 @@ Status view_meshes(const meshlode_scene_input& scene, SceneViews& out) {
 
 Result<SceneInput> view_scene(const meshlode_scene_input* scene, SceneViews& views) {
   if (scene == nullptr) return usage("scene", "is not there");
-  if (Status s = check_table(scene->meshes, scene->mesh_count, "meshes"); !s) return s.error();
-  if (Status s = check_table(scene->materials, scene->material_count, "materials"); !s) return s.error();
-  if (Status s = check_table(scene->instances, scene->instance_count, "instances"); !s) return s.error();
-  if (Status s = view_meshes(*scene, views); !s) return s.error();
+  TRY(check_table(scene->meshes, scene->mesh_count, "meshes"));
+  TRY(check_table(scene->materials, scene->material_count, "materials"));
+  TRY(check_table(scene->instances, scene->instance_count, "instances"));
+  TRY(view_meshes(*scene, views));
   for (std::size_t i = 0; i < scene->material_count; ++i) views.materials.push_back(view(scene->materials[i]));
   for (std::size_t i = 0; i < scene->instance_count; ++i) views.instances.push_back(view(scene->instances[i]));
   SceneInput out;
@@ -162,10 +162,8 @@ Result<std::vector<std::uint8_t>> build_bytes(const meshlode_scene_input* scene,
   meshlode_build_defaults(&options);
   if (given != nullptr) options = *given;
   SceneViews views;
-  const auto input = view_scene(scene, views);
-  if (!input) return input.error();
-  auto read = read_options(options);
-  if (!read) return read.error();
+  TRY_LET(input, view_scene(scene, views));
+  TRY_LET(read, read_options(options));
   std::atomic<bool> is_cancelled = false;  // the two are not called from the same thread
   if (options.on_progress != nullptr) {
     read->on_progress = [&](const BuildProgress& progress) {
@@ -179,8 +177,7 @@ Result<std::vector<std::uint8_t>> build_bytes(const meshlode_scene_input* scene,
 Status build_to_buffer(const meshlode_scene_input* scene, const meshlode_build_options* options, void** bytes,
                        std::size_t* size) {
   if (bytes == nullptr || size == nullptr) return usage("bytes", "has no place");
-  const auto built = build_bytes(scene, options);
-  if (!built) return built.error();
+  TRY_LET(built, build_bytes(scene, options));
   void* const copy = std::malloc(built->size());  // at least a header, so never empty
   if (copy == nullptr) return out_of_memory({});
   std::memcpy(copy, built->data(), built->size());
@@ -193,8 +190,7 @@ Status build_to_file(const meshlode_scene_input* scene, const meshlode_build_opt
   if (path == nullptr) return usage("path", "is not there");
   OutputFiles files;
   if (Status free = files.claim(path); !free) return free;
-  const auto built = build_bytes(scene, options);
-  if (!built) return built.error();
+  TRY_LET(built, build_bytes(scene, options));
   return files.write(path, *built);
 }
 

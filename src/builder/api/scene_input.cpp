@@ -6,6 +6,7 @@
 #include <string>
 
 #include "base/hash.h"
+#include "base/try.h"
 
 namespace meshlode::builder {
 namespace {
@@ -61,11 +62,10 @@ Result<scene::Primitive> make_primitive(const PrimitiveInput& input, const std::
   if (!input.positions.empty() && !input.positions_double.empty()) {
     return invalid(where, "has both positions and positions_double");
   }
-  auto status =
-      input.positions_double.empty()
-          ? copy_positions(input.positions, where + ".positions", repair, primitive.positions, is_usable)
-          : copy_positions(input.positions_double, where + ".positions_double", repair, primitive.positions, is_usable);
-  if (!status) return status.error();
+  TRY_LET(status, input.positions_double.empty()
+                      ? copy_positions(input.positions, where + ".positions", repair, primitive.positions, is_usable)
+                      : copy_positions(input.positions_double, where + ".positions_double", repair, primitive.positions,
+                                       is_usable));
   const std::size_t count = primitive.positions.size();
   if (count >= format::kNone) return invalid(where, "has too many vertices for 32-bit indices");
 
@@ -198,16 +198,14 @@ Result<scene::Scene> make_scene(const SceneInput& input, bool repair) {
     mesh.name = input.meshes[m].name;
     const auto primitives = input.meshes[m].primitives;
     for (std::size_t p = 0; p < primitives.size(); ++p) {
-      auto primitive = make_primitive(primitives[p], at(at("meshes", m) + ".primitives", p), input.materials.size(),
-                                      repair, mesh.drops.repaired);
-      if (!primitive) return primitive.error();
+      TRY_LET(primitive, make_primitive(primitives[p], at(at("meshes", m) + ".primitives", p), input.materials.size(),
+                                        repair, mesh.drops.repaired));
       needs_default_material = needs_default_material || primitive->material.value == input.materials.size();
       mesh.primitives.push_back(std::move(*primitive));
     }
   }
   for (std::size_t i = 0; i < input.materials.size(); ++i) {
-    auto material = make_material(input.materials[i], i);
-    if (!material) return material.error();
+    TRY_LET(material, make_material(input.materials[i], i));
     scene.materials.push_back(std::move(*material));
   }
   if (needs_default_material) {
@@ -215,8 +213,7 @@ Result<scene::Scene> make_scene(const SceneInput& input, bool repair) {
     material.uv_sets_used = 0xF;  // nobody said what it samples: what was given is kept
   }
   for (std::size_t i = 0; i < input.instances.size(); ++i) {
-    auto instance = make_instance(input.instances[i], i, input.meshes.size());
-    if (!instance) return instance.error();
+    TRY_LET(instance, make_instance(input.instances[i], i, input.meshes.size()));
     scene.instances.push_back(std::move(*instance));
   }
   if (input.instances.empty()) {

@@ -7,6 +7,7 @@
 
 #include "base/parallel.h"
 #include "base/release.h"
+#include "base/try.h"
 #include "builder/dag/group_attempt.h"
 #include "builder/dag/level_pool.h"
 #include "builder/dag/level_use.h"
@@ -190,8 +191,7 @@ Result<LodDag> build_dag(const PreparedMesh& mesh, const DagOptions& options) {
 
 Result<LodDag> build_dag_and_free(PreparedMesh& mesh, const DagOptions& options) {
   if (mesh.triangles.empty()) return LodDag{};
-  Result<BuildPool> pool = coarsen(mesh, options);
-  if (!pool) return pool.error();
+  TRY_LET(pool, coarsen(mesh, options));
   return assemble_dag(std::move(*pool), mesh);
 }
 

@@ -10,6 +10,7 @@
 #include <span>
 #include <string>
 
+#include "base/try.h"
 #include "builder/encode/attribute_steps.h"
 #include "builder/encode/bit_stream.h"
 #include "builder/encode/fits.h"
@@ -107,7 +108,7 @@ class ClusterEncoder {
 
   Result<ClusterWords> run() {
     order_triangles();
-    if (Status status = quantize_positions(); !status) return status.error();
+    TRY(quantize_positions());
     put(format::head::kVerticesLess1, static_cast<std::int32_t>(cluster_.vertex_count) - 1);
     put(format::head::kTrianglesLess1, static_cast<std::int32_t>(cluster_.triangle_count) - 1);
     fit_ = fit_positions(positions_);
@@ -367,8 +368,8 @@ class ClusterEncoder {
 }  // namespace
 
 Result<ClusterWords> encode_cluster(const LodDag& dag, const DagCluster& cluster, const ChannelPlan& plan) {
-  if (Status status = check_cluster(dag, cluster); !status) return status.error();
-  if (Status status = check_materials(dag, cluster, plan); !status) return status.error();
+  TRY(check_cluster(dag, cluster));
+  TRY(check_materials(dag, cluster, plan));
   return ClusterEncoder(dag, cluster, plan).run();
 }
 

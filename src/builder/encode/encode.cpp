@@ -15,6 +15,7 @@
 
 #include "base/parallel.h"
 #include "base/release.h"
+#include "base/try.h"
 #include "builder/encode/attribute_steps.h"
 #include "builder/encode/cluster_bytes.h"
 #include "builder/encode/quantize_normal.h"
@@ -330,9 +331,9 @@ bool has_aggregates(std::span<const format::GroupRecord> groups) {
 
 Result<EncodedMesh> encode_mesh(const PreparedMesh& mesh, const LodDag& dag, const Hierarchy& hierarchy,
                                 const EncodeOptions& options) {
-  if (Status status = check_input(mesh, dag, hierarchy, options); !status) return status.error();
+  TRY(check_input(mesh, dag, hierarchy, options));
   const ChannelPlan plan = plan_channels(mesh, dag, options);
-  if (Status status = check_uv_steps(mesh, plan, options); !status) return status.error();
+  TRY(check_uv_steps(mesh, plan, options));
 
   std::vector<GroupWords> group_words(dag.groups.size());
   parallel_for_each_index(dag.groups.size(), 4,
@@ -345,8 +346,7 @@ Result<EncodedMesh> encode_mesh(const PreparedMesh& mesh, const LodDag& dag, con
 
   EncodedMesh out;
   out.record = mesh_record(mesh, dag, plan);
-  auto pages = deal_pages(mesh, dag, group_words);
-  if (!pages) return pages.error();
+  TRY_LET(pages, deal_pages(mesh, dag, group_words));
   out.pages = std::move(*pages);
   parallel_for_each_index(out.pages.size(), 1, [&](std::size_t p) {
     const EncodedMesh::Page& page = out.pages[p];

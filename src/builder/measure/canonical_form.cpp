@@ -11,6 +11,7 @@
 #include "base/id_table.h"
 #include "base/ids.h"
 #include "base/parallel.h"
+#include "base/try.h"
 
 namespace meshlode::builder {
 
@@ -195,7 +196,7 @@ Result<CanonicalForm> canonical_form(const PreparedMesh& mesh, const LodDag& dag
     order_cluster(dag, dag.clusters[c], mesh.layout.stride(), form.triangles);
   });
   const std::vector<std::uint32_t> of_source = number_positions(mesh, dag, form);
-  if (const Status matched = match_level0(mesh, dag, of_source, form); !matched) return matched.error();
+  TRY(match_level0(mesh, dag, of_source, form));
   return form;
 }
 

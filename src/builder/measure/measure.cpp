@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "base/release.h"
+#include "base/try.h"
 #include "builder/measure/canonical_form.h"
 #include "builder/measure/certify_levels.h"
 #include "builder/measure/measure_levels.h"
@@ -42,8 +43,7 @@ Status measure(const PreparedMesh& mesh, format::ErrorTier tier, LodDag& dag, co
       std::any_of(dag.groups.begin(), dag.groups.end(), [](const DagGroup& group) { return group.is_aggregate; });
   if (is_aggregate) add_margin(tier, dag);
   if (is_aggregate || tier == format::ErrorTier::kQem || dag.triangles.empty()) return Ok{};
-  Result<CanonicalForm> form = canonical_form(mesh, dag);
-  if (!form) return form.error();
+  TRY_LET(form, canonical_form(mesh, dag));
   on_form();
   dag.triangles.swap(form->triangles);
   if (tier == format::ErrorTier::kCertified) {

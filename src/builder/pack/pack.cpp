@@ -4,6 +4,7 @@
 #include <cstring>
 #include <optional>
 
+#include "base/try.h"
 #include "builder/pack/compressors.h"
 #include "builder/pack/pack_section.h"
 #include "builder/pack/page_model.h"
@@ -47,8 +48,7 @@ Bytes join(const std::vector<Bytes>& columns) {
 /// Speed is what these codecs are for: only what shrinks without a model of the geometry is touched.
 Result<Bytes> store_columns(const format::MeshRecord& mesh, const PageModel& model, format::Codec codec) {
   const Bytes columns = join(make_columns(mesh, model));
-  const auto side = codec == format::Codec::kLz4 ? pack_lz4(columns) : pack_zstd(columns);
-  if (!side) return side.error();
+  TRY_LET(side, codec == format::Codec::kLz4 ? pack_lz4(columns) : pack_zstd(columns));
   Bytes out = start_stored(format::PageMethod::kColumns, *side, columns.size(), 0);
   for (const std::uint32_t word : model.stream_words) put_u32(out, word);
   return out;
@@ -69,12 +69,10 @@ Bytes store_prefix_codes(const format::MeshRecord& mesh, const PageModel& model)
 
 Result<Bytes> store_draco(const format::MeshRecord& mesh, const PageModel& model) {
   const Bytes columns = join(make_columns(mesh, model));
-  const auto side = pack_draco({columns.begin(), columns.end()});
-  if (!side) return side.error();
+  TRY_LET(side, pack_draco({columns.begin(), columns.end()}));
   std::vector<Bytes> streams;
   for (std::uint32_t s = 0; s < format::kFieldStreams + format::field_count(mesh); ++s) {
-    auto stream = pack_draco(model.streams[s]);
-    if (!stream) return stream.error();
+    TRY_LET(stream, pack_draco(model.streams[s]));
     streams.push_back(std::move(*stream));
   }
   return store_strips(*side, columns.size(), model, streams);
@@ -101,8 +99,7 @@ Result<std::vector<std::uint8_t>> store_page(const format::MeshRecord& mesh, std
 Result<PackedPage> pack_page(const format::MeshRecord& mesh, std::span<const std::uint8_t> page, format::Codec codec) {
   PackedPage out;
   if (codec == format::Codec::kNone) return out;
-  auto stored = store_page(mesh, page, codec);
-  if (!stored) return stored.error();
+  TRY_LET(stored, store_page(mesh, page, codec));
   if (stored->size() < page.size()) {
     out.codec = codec;
     out.bytes = std::move(*stored);

@@ -11,6 +11,7 @@
 
 #include "base/disjoint_sets.h"
 #include "base/parallel.h"
+#include "base/try.h"
 #include "base/unset_vector.h"
 #include "builder/prepare/corners.h"
 #include "builder/prepare/median_edge.h"
@@ -121,9 +122,7 @@ Status choose_frame(const Corners& corners, const PrepareOptions& options, Prepa
     return Error{ErrorCode::kUnsupported, {}, "its extent vanishes from a double when squared"};
   }
   if (options.frame) return take_frame(all, *options.frame, mesh);
-  const Result<format::PositionGrid> grid =
-      choose_grid(largest_half, mesh.diagonal, median_edge_length(corners), options);
-  if (!grid) return grid.error();
+  TRY_LET(grid, choose_grid(largest_half, mesh.diagonal, median_edge_length(corners), options));
   mesh.grid = *grid;
   // What the format cannot hold is refused here, where it is known, and not when all is built.
   if (grid->log2 < kMinGridLog2 || grid->log2 > kMaxGridLog2) {

@@ -7,6 +7,7 @@
 
 #include "base/hash.h"
 #include "base/parallel.h"
+#include "base/try.h"
 #include "builder/write/instance_scale.h"
 
 namespace meshlode::builder {
@@ -153,7 +154,7 @@ std::uint32_t version_of(const AssetTables& tables) {
 }
 
 Result<AssetTables> make_tables(WriteInput& input) {
-  if (Status status = check_counts(input); !status) return status.error();
+  TRY(check_counts(input));
   AssetTables out;
   for (std::size_t m = 0; m < input.meshes.size(); ++m) {
     append_mesh(input.meshes[m], input.mesh_names[m], input.promises, out);

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/parallel.h"
+#include "base/try.h"
 #include "builder/pack/pack.h"
 #include "builder/write/file_layout.h"
 
@@ -52,8 +53,7 @@ std::vector<T> read_table(const RepackInput& input, format::SectionId id) {
 }
 
 Result<StoredPage> store_page_of(const RepackInput& input, const format::MeshRecord& mesh, std::size_t page) {
-  auto decoded = input.load_page(page);
-  if (!decoded) return decoded.error();
+  TRY_LET(decoded, input.load_page(page));
   auto packed = pack_page(mesh, *decoded, input.codec);
   if (!packed) {
     return Error{packed.error().code, "page " + std::to_string(page), packed.error().detail};
@@ -129,8 +129,7 @@ void move_to_sections(const RepackInput& input, std::span<const format::SectionE
 Result<std::vector<std::uint8_t>> repack_asset(const RepackInput& input) {
   auto pages = read_table<format::PageRecord>(input, format::SectionId::kPages);
   auto blobs = read_table<format::BlobRecord>(input, format::SectionId::kBlobs);
-  const auto stored = store_pages(input, pages);
-  if (!stored) return stored.error();
+  TRY_LET(stored, store_pages(input, pages));
   std::uint64_t page_data_bytes = 0;
   for (std::size_t p = 0; p < pages.size(); ++p) {
     place_page((*stored)[p].codec, (*stored)[p].bytes, pages[p], page_data_bytes);

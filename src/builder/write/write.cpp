@@ -6,6 +6,7 @@
 
 #include "base/hash.h"
 #include "base/parallel.h"
+#include "base/try.h"
 #include "builder/pack/pack.h"
 #include "builder/write/asset_tables.h"
 #include "builder/write/file_layout.h"
@@ -125,13 +126,11 @@ void copy_pages_and_blobs(const AssetTables& tables, const std::vector<PackedPag
 }  // namespace
 
 Result<std::vector<std::uint8_t>> write_asset(WriteInput input) {
-  auto made = make_tables(input);
-  if (!made) return made.error();
+  TRY_LET(made, make_tables(input));
   AssetTables tables = std::move(*made);
   const scene::Scene& scene = *input.scene;
   const Hash128 content_hash = hash_content(tables, input.whole_document(), scene.blobs, input.promises != 0);
-  auto packed = pack_pages(tables, input.codec);
-  if (!packed) return packed.error();
+  TRY_LET(packed, pack_pages(tables, input.codec));
   const std::uint64_t page_data_bytes = place_pages(tables, *packed);
   const std::uint64_t blob_data_bytes = place_blobs(tables);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "draw/gpu/gpu_camera.h"
 
+#include "base/try.h"
 #include "draw/raster/projection.h"
 
 namespace meshlode::draw {
@@ -14,8 +15,7 @@ void put(double (&out)[3], const Vec3d& v) {
 }  // namespace
 
 Result<GpuCamera> make_gpu_camera(const run::Camera& camera, double pixel_error, double scene_depth) {
-  const Result<Projection> projection = make_projection(camera);
-  if (!projection) return projection.error();
+  TRY_LET(projection, make_projection(camera));
   GpuCamera out{};
   put(out.eye, projection->eye);
   put(out.right, projection->right);
@@ -36,8 +36,7 @@ Result<GpuCamera> make_gpu_camera(const run::Camera& camera, double pixel_error,
 
 Result<double> depth_of_scene(const run::Asset& asset, const run::Camera& camera) {
   if (!camera.is_orthographic) return 0.0;
-  const Result<Projection> projection = make_projection(camera);
-  if (!projection) return projection.error();
+  TRY_LET(projection, make_projection(camera));
   return scene_depth(asset, *projection);
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "base/try.h"
 #include "draw/gpu/shaders/frame.h"
 #include "draw/gpu/upload_table.h"
 #include "run/decode/decode.h"
@@ -123,7 +124,7 @@ Result<Pages> upload_pages(Device& device, const run::Asset& asset) {
   }
   if (words + 4 > 0xFFFFFFFFu) return Error{ErrorCode::kUnsupported, "pages", "more than 16 GiB of pages"};
   out.bytes = words * 4;
-  if (const Status status = run::check_decoded_bytes(asset, out.bytes); !status) return status.error();
+  TRY(run::check_decoded_bytes(asset, out.bytes));
   auto buffer = device.make_buffer(out.bytes + 16, Memory::kDevice);  // a reader may look at one word behind a page
   if (!buffer) return buffer.error();
   out.buffer = *buffer;
@@ -131,13 +132,12 @@ Result<Pages> upload_pages(Device& device, const run::Asset& asset) {
   std::uint64_t chunk_at = 0;
   constexpr std::size_t kChunk = 8u << 20;
   for (std::size_t p = 0; p < asset.pages().size(); ++p) {
-    const auto page = run::load_page(asset, PageId(p));
-    if (!page) return page.error();
+    TRY_LET(page, run::load_page(asset, PageId(p)));
     const std::span<const std::uint8_t> bytes = page->bytes();
     chunk.insert(chunk.end(), bytes.begin(), bytes.end());
     chunk.resize((chunk.size() + 15) / 16 * 16, 0);
     if (chunk.size() < kChunk && p + 1 < asset.pages().size()) continue;
-    if (const Status done = device.upload(out.buffer, chunk, chunk_at); !done) return done.error();
+    TRY(device.upload(out.buffer, chunk, chunk_at));
     chunk_at += chunk.size();
     chunk.clear();
   }
@@ -281,8 +281,7 @@ Status upload_tables(Device& device, const run::Asset& asset, std::span<const fo
   if (!roots) return roots.error();
   scene.roots = *roots;
   const auto put = [&](Buffer& slot, const auto& table) -> Status {
-    auto buffer = make_table(device, table);
-    if (!buffer) return buffer.error();
+    TRY_LET(buffer, make_table(device, table));
     slot = *buffer;
     return Ok{};
   };
@@ -311,8 +310,7 @@ Result<GpuScene> upload_scene(Device& device, const run::Asset& asset,
         std::to_string(out.bvh_depth) + " nodes deep, the GPU traversal has room for " + std::to_string(MAX_DEPTH)};
   }
   count_instances(asset, instances, out);
-  auto pages = upload_pages(device, asset);
-  if (!pages) return pages.error();
+  TRY_LET(pages, upload_pages(device, asset));
   out.pages = pages->buffer;
   out.page_bytes = pages->bytes;
 
@@ -323,7 +321,7 @@ Result<GpuScene> upload_scene(Device& device, const run::Asset& asset,
   if (!out.alpha_masks->damage) return out.alpha_masks->damage.error();
   find_needs(asset, out);
   const Errors errors = find_errors(asset, bounds);
-  if (const Status s = upload_tables(device, asset, instances, errors, *pages, out); !s) return s.error();
+  TRY(upload_tables(device, asset, instances, errors, *pages, out));
   return out;
 }
 

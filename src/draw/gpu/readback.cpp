@@ -4,6 +4,7 @@
 #include <array>
 #include <cstring>
 
+#include "base/try.h"
 #include "draw/gpu/push.h"
 #include "draw/gpu/renderer.h"
 #include "draw/gpu/shaders.h"
@@ -13,29 +14,26 @@ namespace meshlode::draw {
 Result<GpuCounters> Renderer::read_counters() {
   GpuCounters out{};
   const std::span<std::uint8_t> bytes(reinterpret_cast<std::uint8_t*>(&out), sizeof out);
-  if (const Status s = device_.download(counters_block_, bytes); !s) return s.error();
+  TRY(device_.download(counters_block_, bytes));
   return out;
 }
 
 Result<std::vector<GpuVisible>> Renderer::read_visible() {
-  const auto counters = read_counters();
-  if (!counters) return counters.error();
+  TRY_LET(counters, read_counters());
   std::vector<GpuVisible> out(std::min(counters->stages[STAGE_SLOTS].count, frame_.slot_capacity));
   const std::span<std::uint8_t> bytes(reinterpret_cast<std::uint8_t*>(out.data()), out.size() * sizeof(GpuVisible));
-  if (const Status s = device_.download(visible_, bytes); !s) return s.error();
+  TRY(device_.download(visible_, bytes));
   return out;
 }
 
 Result<std::vector<Renderer::Item>> Renderer::read_items() {
-  const auto counters = read_counters();
-  if (!counters) return counters.error();
-  const auto visible = read_visible();
-  if (!visible) return visible.error();
+  TRY_LET(counters, read_counters());
+  TRY_LET(visible, read_visible());
   const std::uint32_t front = std::min(counters->stages[STAGE_SOFTWARE].count, frame_.item_capacity);
   const std::uint32_t back = std::min(counters->stages[STAGE_HARDWARE].count, frame_.item_capacity - front);
   std::vector<std::array<std::uint32_t, 2>> pairs(std::size_t{front} + back);
   const std::span<std::uint8_t> bytes(reinterpret_cast<std::uint8_t*>(pairs.data()), pairs.size() * 8);
-  if (const Status s = device_.download(items_, bytes.first(std::size_t{front} * 8)); !s) return s.error();
+  TRY(device_.download(items_, bytes.first(std::size_t{front} * 8)));
   if (const Status s = device_.download(items_, bytes.subspan(std::size_t{front} * 8),
                                         std::uint64_t{frame_.item_capacity - back} * 8);
       !s) {
@@ -54,22 +52,19 @@ Result<std::vector<Renderer::Item>> Renderer::read_items() {
 }
 
 Result<std::vector<run::ClusterInstance>> Renderer::read_cut() {
-  const auto items = read_items();
-  if (!items) return items.error();
+  TRY_LET(items, read_items());
   std::vector<run::ClusterInstance> out;
   for (const Item& item : *items) out.push_back(item.key);
   return out;
 }
 
 Status Renderer::redraw_in_order() {
-  const auto before = read_counters();
-  if (!before) return before.error();
+  TRY_LET(before, read_counters());
   const std::uint32_t front = std::min(before->stages[STAGE_SOFTWARE].count, frame_.item_capacity);
   const std::uint32_t back = std::min(before->stages[STAGE_HARDWARE].count, frame_.item_capacity - front);
   const std::uint32_t count = front + back;
   // Both ends of the list become one, in order.
-  auto list = Commands::begin(device_);
-  if (!list) return list.error();
+  TRY_LET(list, Commands::begin(device_));
   if (back > 0) {
     auto rest = device_.make_buffer(std::uint64_t{back} * 8, Memory::kDevice);  // the two places may overlap
     if (!rest) return rest.error();
@@ -85,7 +80,7 @@ Status Renderer::redraw_in_order() {
       list->barrier();
     }
   }
-  if (const auto ran = list->run(); !ran) return ran.error();
+  TRY(list->run());
   GpuCounters counters = counters_;
   counters.stages[STAGE_SOFTWARE] = {count, std::min(count, kGroupRow), (count + kGroupRow - 1) / kGroupRow, 1};
   counters.stages[STAGE_HARDWARE] = counters.stages[STAGE_SOFTWARE];  // the far ones' pass looks at all items too
@@ -93,14 +88,14 @@ Status Renderer::redraw_in_order() {
   counters.stages[STAGE_SLOTS] = before->stages[STAGE_SLOTS];
   std::memcpy(upload_.mapped(), &frame_, sizeof frame_);
   std::memcpy(upload_.mapped() + sizeof frame_, &counters, sizeof counters);
-  if (const auto ran = lists_[1].run(); !ran) return ran.error();
+  TRY(lists_[1].run());
   return Ok{};
 }
 
 Result<VisibilityBuffer> Renderer::read_pixels() {
   std::vector<std::uint64_t> values(std::size_t{frame_.width} * frame_.height);
   const std::span<std::uint8_t> bytes(reinterpret_cast<std::uint8_t*>(values.data()), values.size() * 8);
-  if (const Status s = device_.download(pixels_, bytes); !s) return s.error();
+  TRY(device_.download(pixels_, bytes));
   VisibilityBuffer out = make_visibility_buffer(frame_.width, frame_.height);
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (values[i] == 0) continue;
@@ -113,12 +108,10 @@ Result<VisibilityBuffer> Renderer::read_pixels() {
 }
 
 Result<VisibilityBuffer> Renderer::read_pixels_of_cut() {
-  const auto items = read_items();
-  if (!items) return items.error();
+  TRY_LET(items, read_items());
   std::vector<std::uint32_t> index(frame_.item_capacity, VisibilityBuffer::kNothing);
   for (std::size_t i = 0; i < items->size(); ++i) index[(*items)[i].place] = static_cast<std::uint32_t>(i);
-  auto out = read_pixels();
-  if (!out) return out.error();
+  TRY_LET(out, read_pixels());
   for (std::uint32_t& item : out->item) {
     if (item == VisibilityBuffer::kNothing) continue;
     if (item >= index.size() || index[item] == VisibilityBuffer::kNothing) {
@@ -132,23 +125,20 @@ Result<VisibilityBuffer> Renderer::read_pixels_of_cut() {
 Result<Renderer::Resolved> Renderer::resolve(std::uint32_t view, std::uint32_t level_count) {
   const std::array<std::uint32_t, 4> constants = {0, 0, 0, view};
   const bool is_textured = scene_.surfaces && (view == VIEW_SHADED || view == VIEW_NORMALS);
-  const auto pipeline = device_.make_compute(is_textured ? shaders::resolve_textures() : shaders::resolve(), constants);
-  if (!pipeline) return pipeline.error();
-  auto list = Commands::begin(device_);
-  if (!list) return list.error();
+  TRY_LET(pipeline, device_.make_compute(is_textured ? shaders::resolve_textures() : shaders::resolve(), constants));
+  TRY_LET(list, Commands::begin(device_));
   const Push push{frame_block_.address(), 0, 0, 0, level_count};
   list->stamp("begin");
   list->dispatch(*pipeline, bytes_of(push), (frame_.width * frame_.height + kGroupSize - 1) / kGroupSize);
   list->barrier();
   list->stamp("resolve");
-  const auto times = list->run();
-  if (!times) return times.error();
+  TRY_LET(times, list->run());
   Resolved out;
   out.milliseconds = times->empty() ? 0.0 : times->front().milliseconds;
   out.image.width = frame_.width;
   out.image.height = frame_.height;
   out.image.rgba.resize(std::size_t{frame_.width} * frame_.height * 4);
-  if (const Status s = device_.download(colors_, out.image.rgba); !s) return s.error();
+  TRY(device_.download(colors_, out.image.rgba));
   return out;
 }
 

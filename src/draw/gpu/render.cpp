@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/try.h"
 #include "draw/gpu/gpu_camera.h"
 #include "draw/gpu/gpu_scene.h"
 #include "draw/gpu/pass_plan.h"
@@ -25,8 +26,7 @@ void append(std::vector<std::string>& list, const std::vector<std::string>& more
 Result<PassPlan> plan_view(const GpuScene& scene, const DeviceInfo& device, const run::Camera& camera,
                            const GpuRenderOptions& options) {
   const bool has_colors = options.view == VIEW_SHADED || options.view == VIEW_NORMALS;
-  auto plan = plan_passes(scene, device, camera.width, camera.height, options.force, has_colors);
-  if (!plan) return plan.error();
+  TRY_LET(plan, plan_passes(scene, device, camera.width, camera.height, options.force, has_colors));
   plan->options.overdraw = options.view == VIEW_OVERDRAW;
   if (options.view == VIEW_OCCLUDED) plan->options.occlusion = true;
   return plan;
@@ -44,18 +44,14 @@ run::Camera beside(const run::Camera& camera) {
 /// The frame, complete.
 Status draw_frame(Renderer& renderer, const run::Asset& asset, const run::Camera& camera,
                   const GpuRenderOptions& options, const DeviceInfo& device, GpuPicture& out) {
-  const auto depth = depth_of_scene(asset, camera);
-  if (!depth) return depth.error();
+  TRY_LET(depth, depth_of_scene(asset, camera));
   if (options.view == VIEW_OCCLUDED) {
-    const auto before = renderer.draw(beside(camera), options.pixel_error, *depth);
-    if (!before) return before.error();
+    TRY_LET(before, renderer.draw(beside(camera), options.pixel_error, *depth));
   }
   for (std::uint32_t i = 1; i < options.frames; ++i) {
-    const auto earlier = renderer.draw(camera, options.pixel_error, *depth);
-    if (!earlier) return earlier.error();
+    TRY_LET(earlier, renderer.draw(camera, options.pixel_error, *depth));
   }
-  const auto frame = renderer.draw(camera, options.pixel_error, *depth);
-  if (!frame) return frame.error();
+  TRY_LET(frame, renderer.draw(camera, options.pixel_error, *depth));
   for (const Commands::Time& time : frame->times) out.frame_milliseconds += time.milliseconds;
   if (frame->overflow == 0) return Ok{};
   return Error{ErrorCode::kUnsupported, device.name,
@@ -70,14 +66,12 @@ bool is_view_of_passes(std::uint32_t view) {
 
 /// Cut, ids and colours of the frame.
 Status read_picture(Renderer& renderer, const run::Asset& asset, std::uint32_t view, GpuPicture& out) {
-  auto cut = renderer.read_cut();
-  if (!cut) return cut.error();
+  TRY_LET(cut, renderer.read_cut());
   out.cut = std::move(*cut);
   std::uint32_t level_count = 1;
   for (const format::MeshRecord& mesh : asset.meshes()) level_count = std::max(level_count, mesh.level_count);
   const auto resolve = [&]() -> Status {
-    auto resolved = renderer.resolve(view, level_count);
-    if (!resolved) return resolved.error();
+    TRY_LET(resolved, renderer.resolve(view, level_count));
     out.image = std::move(resolved->image);
     return Ok{};
   };
@@ -89,8 +83,7 @@ Status read_picture(Renderer& renderer, const run::Asset& asset, std::uint32_t v
     if (const Status s = resolve(); !s) return s;
   }
   if (view == VIEW_LEVELS) draw_level_legend(out.image, level_count);
-  auto visibility = renderer.read_pixels();
-  if (!visibility) return visibility.error();
+  TRY_LET(visibility, renderer.read_pixels());
   out.visibility = std::move(*visibility);
   return Ok{};
 }
@@ -99,13 +92,10 @@ Status read_picture(Renderer& renderer, const run::Asset& asset, std::uint32_t v
 
 Status render_on_gpu(const run::Asset& asset, const run::Camera& camera, const GpuRenderOptions& options,
                      ImageBudget& images, GpuPicture& out) {
-  auto device = Device::open({.device = options.device, .validate = false});
-  if (!device) return device.error();
-  auto scene = upload_scene(*device, asset, {}, options.bounds, &images);
-  if (!scene) return scene.error();
+  TRY_LET(device, Device::open({.device = options.device, .validate = false}));
+  TRY_LET(scene, upload_scene(*device, asset, {}, options.bounds, &images));
   append(out.warnings, scene->alpha_masks->warnings);
-  const auto plan = plan_view(*scene, device->info(), camera, options);
-  if (!plan) return plan.error();
+  TRY_LET(plan, plan_view(*scene, device->info(), camera, options));
   out.plan = describe_plan(*plan, "  ");
   out.device = device->info().name;
   if (plan->textures) {
@@ -114,8 +104,7 @@ Status render_on_gpu(const run::Asset& asset, const run::Camera& camera, const G
     if (!textures.damage) return textures.damage;
     if (const Status s = upload_textures(*device, textures, *scene); !s) return s;
   }
-  auto renderer = Renderer::make(*device, *scene, plan->options);
-  if (!renderer) return renderer.error();
+  TRY_LET(renderer, Renderer::make(*device, *scene, plan->options));
   if (const Status s = draw_frame(*renderer, asset, camera, options, device->info(), out); !s) return s;
   return read_picture(*renderer, asset, options.view, out);
 }

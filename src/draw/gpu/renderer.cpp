@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstring>
 
+#include "base/try.h"
 #include "draw/gpu/gpu_camera.h"
 #include "draw/gpu/push.h"
 #include "draw/gpu/shaders.h"
@@ -42,10 +43,10 @@ Result<Renderer> Renderer::make(Device device, GpuScene scene, const RendererOpt
   out.device_ = std::move(device);
   out.scene_ = std::move(scene);
   out.options_ = options;
-  if (const Status s = out.make_pipelines(); !s) return s.error();
-  if (const Status s = out.resize(options.width, options.height); !s) return s.error();
+  TRY(out.make_pipelines());
+  TRY(out.resize(options.width, options.height));
   if (out.has_far_raster()) {
-    if (const Status s = out.decode_roots(); !s) return s.error();
+    TRY(out.decode_roots());
   }
   return out;
 }
@@ -119,8 +120,7 @@ Status Renderer::make_buffers() {
       {&upload_, sizeof(GpuFrame) + sizeof(GpuCounters), Memory::kHost},
   };
   for (const Wanted& w : wanted) {
-    auto buffer = device_.make_buffer(w.bytes, w.memory);
-    if (!buffer) return buffer.error();
+    TRY_LET(buffer, device_.make_buffer(w.bytes, w.memory));
     *w.slot = *buffer;
   }
   set_addresses();
@@ -214,8 +214,7 @@ Status Renderer::make_pipelines() {
                            {&pyramid_build_, shaders::pyramid()}};
   for (const Wanted& w : wanted) {
     const bool is_far = w.slot == &instances_ || w.slot == &raster_far_;
-    auto pipeline = device_.make_compute(w.spirv, is_far ? far_constants : constants);
-    if (!pipeline) return pipeline.error();
+    TRY_LET(pipeline, device_.make_compute(w.spirv, is_far ? far_constants : constants));
     *w.slot = *pipeline;
   }
   if (!has_hardware) return Ok{};
@@ -226,9 +225,8 @@ Status Renderer::make_pipelines() {
   const std::span<const std::uint32_t> fragments[] = {shaders::hardware_frag(), shaders::hardware_mesh_frag(),
                                                       shaders::hardware_mask_frag(),
                                                       shaders::hardware_mesh_mask_frag()};
-  auto draw = device_.make_draw(is_mesh ? shaders::hardware_mesh() : shaders::hardware_vert(),
-                                fragments[(is_masked ? 2 : 0) + (is_mesh ? 1 : 0)], constants, is_mesh);
-  if (!draw) return draw.error();
+  TRY_LET(draw, device_.make_draw(is_mesh ? shaders::hardware_mesh() : shaders::hardware_vert(),
+                                  fragments[(is_masked ? 2 : 0) + (is_mesh ? 1 : 0)], constants, is_mesh));
   hardware_ = *draw;
   return Ok{};
 }
@@ -318,8 +316,7 @@ void Renderer::record_pyramid(Commands& list) {
 
 Status Renderer::record() {
   for (int i = 0; i < 2; ++i) {
-    auto list = Commands::begin(device_);
-    if (!list) return list.error();
+    TRY_LET(list, Commands::begin(device_));
     lists_.push_back(*list);
   }
   Commands& list = lists_[0];
@@ -340,39 +337,34 @@ Status Renderer::record() {
 
 Status Renderer::decode_roots() {
   if (const Status s = device_.upload(frame_block_, bytes_of(frame_)); !s) return s;
-  auto list = Commands::begin(device_);
-  if (!list) return list.error();
+  TRY_LET(list, Commands::begin(device_));
   const Push push{frame_block_.address()};
   list->dispatch(roots_, bytes_of(push), scene_.mesh_count);
   list->barrier();
-  if (const auto ran = list->run(); !ran) return ran.error();
+  TRY(list->run());
   return Ok{};
 }
 
 Status Renderer::clear_lists() {
-  auto clear = Commands::begin(device_);
-  if (!clear) return clear.error();
+  TRY_LET(clear, Commands::begin(device_));
   if (options_.occlusion)
     clear->fill(pyramid_, 0, pyramid_.bytes(), 0);  // before the first frame nothing hides anything
   // Places that nobody has filled.
   if (options_.persistent || options_.persistent_second) clear->fill(queue_, 0, queue_.bytes(), 0);
   clear->barrier();
-  if (const auto ran = clear->run(); !ran) return ran.error();
+  TRY(clear->run());
   return Ok{};
 }
 
 Result<FrameReport> Renderer::draw(const run::Camera& camera, double pixel_error, double scene_depth) {
-  const auto gpu_camera = make_gpu_camera(camera, pixel_error, scene_depth);
-  if (!gpu_camera) return gpu_camera.error();
+  TRY_LET(gpu_camera, make_gpu_camera(camera, pixel_error, scene_depth));
   frame_.last = has_last_ ? frame_.camera : *gpu_camera;
   frame_.camera = *gpu_camera;
   has_last_ = true;
   std::memcpy(upload_.mapped(), &frame_, sizeof frame_);
   std::memcpy(upload_.mapped() + sizeof frame_, &counters_, sizeof counters_);
-  auto times = lists_[0].run();
-  if (!times) return times.error();
-  const auto counters = read_counters();
-  if (!counters) return counters.error();
+  TRY_LET(times, lists_[0].run());
+  TRY_LET(counters, read_counters());
   FrameReport out;
   out.times = std::move(*times);
   out.visible_instances = counters->stages[STAGE_SLOTS].count;
@@ -388,7 +380,7 @@ Result<FrameReport> Renderer::draw(const run::Camera& camera, double pixel_error
   for (const std::uint32_t added : counters->added) out.traversed_nodes += added;
   if (out.items > frame_.item_capacity) out.overflow |= OVERFLOW_CLUSTERS;  // both ends together
   if ((options_.persistent || options_.persistent_second) && (out.overflow & OVERFLOW_QUEUE) != 0) {
-    if (const Status s = clear_lists(); !s) return s.error();  // places may be left that nobody took
+    TRY(clear_lists());  // places may be left that nobody took
     has_last_ = false;
   }
   return out;

@@ -7,6 +7,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "base/try.h"
 #include "draw/gpu/vulkan/vulkan.h"
 
 namespace meshlode::draw {
@@ -15,11 +16,10 @@ namespace meshlode::draw {
 template <class T>
 [[nodiscard]] Result<Buffer> make_table(Device& device, const std::vector<T>& table) {
   static_assert(std::is_trivially_copyable_v<T>);
-  auto buffer = device.make_buffer(table.size() * sizeof(T), Memory::kDevice);
-  if (!buffer) return buffer.error();
+  TRY_LET(buffer, device.make_buffer(table.size() * sizeof(T), Memory::kDevice));
   const std::span<const std::uint8_t> bytes(reinterpret_cast<const std::uint8_t*>(table.data()),
                                             table.size() * sizeof(T));
-  if (const Status done = device.upload(*buffer, bytes); !done) return done.error();
+  TRY(device.upload(*buffer, bytes));
   return buffer;
 }
 

@@ -2,6 +2,7 @@
 // Textures on the device: one buffer of texels, mip levels and all, and tables that say where they lie.
 #include <algorithm>
 
+#include "base/try.h"
 #include "draw/gpu/gpu_scene.h"
 #include "draw/gpu/shaders/frame.h"
 #include "draw/gpu/upload_table.h"
@@ -41,8 +42,7 @@ Status upload_textures(Device& device, const TextureSet& textures, GpuScene& sce
     words += image.texels.size();
     table.push_back(t);
   }
-  auto texels = device.make_buffer(words * 4, Memory::kDevice);
-  if (!texels) return texels.error();
+  TRY_LET(texels, device.make_buffer(words * 4, Memory::kDevice));
   std::uint64_t at = 0;
   for (const TextureImage& image : textures.images) {
     const std::span<const std::uint8_t> bytes(reinterpret_cast<const std::uint8_t*>(image.texels.data()),
@@ -58,10 +58,8 @@ Status upload_textures(Device& device, const TextureSet& textures, GpuScene& sce
     s.normal_scale = static_cast<float>(material.normal_scale);
     surfaces.push_back(s);
   }
-  auto table_buffer = make_table(device, table);
-  if (!table_buffer) return table_buffer.error();
-  auto surface_buffer = make_table(device, surfaces);
-  if (!surface_buffer) return surface_buffer.error();
+  TRY_LET(table_buffer, make_table(device, table));
+  TRY_LET(surface_buffer, make_table(device, surfaces));
   scene.texels = *texels;
   scene.textures = *table_buffer;
   scene.surfaces = *surface_buffer;

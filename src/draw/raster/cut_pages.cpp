@@ -2,6 +2,7 @@
 #include "draw/raster/cut_pages.h"
 
 #include "base/parallel.h"
+#include "base/try.h"
 
 namespace meshlode::draw {
 
@@ -30,7 +31,7 @@ Result<CutPages> CutPages::load(const run::Asset& asset, std::span<const run::Cl
   std::uint64_t bytes = 0;
   for (std::size_t page = 0; page < is_needed.size(); ++page)
     bytes += is_needed[page] != 0 ? asset.pages()[page].bytes : 0;
-  if (const Status status = run::check_decoded_bytes(asset, bytes); !status) return status.error();
+  TRY(run::check_decoded_bytes(asset, bytes));
   CutPages out;
   out.pages_.resize(asset.pages().size());
   std::vector<std::optional<Error>> errors(asset.pages().size());

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "base/try.h"
 #include "draw/raster/cut_pages.h"
 #include "draw/raster/legend.h"
 #include "draw/raster/pixel_surface.h"
@@ -152,10 +153,8 @@ void shade_item(const ShadeContext& context, const CutPages& pages, const run::C
 
 Result<Image> shade_view(const run::Asset& asset, std::span<const run::ClusterInstance> cut, const run::Camera& camera,
                          const VisibilityBuffer& visibility, View view, const TextureSet& textures) {
-  const Result<Projection> projection = make_projection(camera);
-  if (!projection) return projection.error();
-  const Result<CutPages> pages = CutPages::load(asset, cut);
-  if (!pages) return pages.error();
+  TRY_LET(projection, make_projection(camera));
+  TRY_LET(pages, CutPages::load(asset, cut));
 
   Image image;
   image.width = visibility.width;

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "base/parallel.h"
+#include "base/try.h"
 #include "draw/raster/alpha_cutoff.h"
 #include "draw/raster/coverage.h"
 #include "draw/raster/cut_pages.h"
@@ -79,11 +80,9 @@ VisibilityBuffer make_visibility_buffer(std::uint32_t width, std::uint32_t heigh
 
 Result<VisibilityBuffer> draw_cut(const run::Asset& asset, std::span<const run::ClusterInstance> cut,
                                   const run::Camera& camera, const AlphaMasks& masks) {
-  Result<Projection> projection = make_projection(camera);
-  if (!projection) return projection.error();
+  TRY_LET(projection, make_projection(camera));
   projection->far_distance = scene_depth(asset, *projection);
-  const Result<CutPages> pages = CutPages::load(asset, cut);
-  if (!pages) return pages.error();
+  TRY_LET(pages, CutPages::load(asset, cut));
 
   VisibilityBuffer buffer = make_visibility_buffer(camera.width, camera.height);
   std::vector<ScreenSoup> parts;
@@ -103,8 +102,7 @@ Result<VisibilityBuffer> draw_cut(const run::Asset& asset, std::span<const run::
 
 Result<Image> render_cut(const run::Asset& asset, std::span<const run::ClusterInstance> cut, const run::Camera& camera,
                          View view, const AlphaMasks& masks) {
-  const Result<VisibilityBuffer> visibility = draw_cut(asset, cut, camera, masks);
-  if (!visibility) return visibility.error();
+  TRY_LET(visibility, draw_cut(asset, cut, camera, masks));
   return shade_view(asset, cut, camera, *visibility, view);
 }
 

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <string_view>
 
+#include "base/try.h"
 #include "draw/textures/image_readers.h"
 
 namespace meshlode::draw {
@@ -56,11 +57,10 @@ Result<DecodedImage> decode_image(std::span<const std::uint8_t> bytes, std::uint
   DecodedImage out;
   if (capacity > 0) {
     // Bytes that are no such image must not cost the room for one.
-    if (const auto checked = read_image_header(bytes); !checked) return checked.error();
+    TRY(read_image_header(bytes));
     out.texels.reserve(capacity);
   }
-  const auto header = read_any(bytes, &out.texels);
-  if (!header) return header.error();
+  TRY_LET(header, read_any(bytes, &out.texels));
   out.width = header->width;
   out.height = header->height;
   return out;

@@ -10,6 +10,7 @@
 
 #include <jerror.h>
 
+#include "base/try.h"
 #include "draw/textures/image_readers.h"
 
 namespace meshlode::draw {
@@ -93,7 +94,7 @@ Result<ImageHeader> read_jpeg(std::span<const std::uint8_t> bytes, std::vector<s
   const auto damaged = [&] { return Error{ErrorCode::kInvalid, "image", std::string("JPEG: ") + reader.message}; };
   if (!read_header(reader, bytes.data(), static_cast<unsigned long>(bytes.size()))) return damaged();
   const std::uint64_t width = reader.info.image_width, height = reader.info.image_height;
-  if (const Status size = check_image_size(width, height); !size) return size.error();
+  TRY(check_image_size(width, height));
   if (reader.info.arith_code != 0 || reader.info.num_components == 4) {
     return Error{ErrorCode::kUnsupported, "image", "JPEG with arithmetic coding or of four colours"};
   }

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <string>
 
+#include "base/try.h"
 #include "draw/textures/image_readers.h"
 
 namespace meshlode::draw {
@@ -85,7 +86,7 @@ Result<ImageHeader> read_png(std::span<const std::uint8_t> bytes, std::vector<st
   if (reader.info == nullptr) return Error{ErrorCode::kUnsupported, "image", "libpng gives no reader"};
   const auto damaged = [&] { return Error{ErrorCode::kInvalid, "image", std::string("PNG: ") + reader.message}; };
   if (!read_header(reader)) return damaged();
-  if (const Status size = check_image_size(reader.width, reader.height); !size) return size.error();
+  TRY(check_image_size(reader.width, reader.height));
   // Deflate makes at most 1032 bytes of one: what the file cannot hold is not made room for.
   constexpr std::uint64_t kMostInflation = 1032;
   if (std::uint64_t{reader.stored_row_bytes} * reader.height > kMostInflation * bytes.size()) {

@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "base/try.h"
 #include "draw/textures/image_readers.h"
 
 namespace meshlode::draw {
@@ -41,7 +42,7 @@ Result<ImageHeader> read_webp(std::span<const std::uint8_t> bytes, std::vector<s
   header.width = static_cast<std::uint32_t>(config.input.width);
   header.height = static_cast<std::uint32_t>(config.input.height);
   header.decoder_bytes = decoder_bytes(config.input);
-  if (const Status size = check_image_size(header.width, header.height); !size) return size.error();
+  TRY(check_image_size(header.width, header.height));
   // One colour everywhere takes no bits a texel, so that no ratio follows from the format; this one is generous.
   constexpr std::uint64_t kSmallImage = std::uint64_t{1} << 24U, kMostTexelsOfAByte = 4096;
   const std::size_t count = std::size_t{header.width} * header.height;

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstring>
 
+#include "base/try.h"
 #include "draw/gpu/gpu_camera.h"
 #include "draw/gpu/shaders.h"
 #include "draw/gpu/shaders/frame.h"
@@ -42,17 +43,12 @@ std::vector<std::uint32_t> expected_words(const run::DecodedCluster& cluster) {
 }  // namespace
 
 Result<Comparison> compare_decode(draw::Device& device, const draw::GpuScene& scene, const run::Asset& asset) {
-  const auto decoded = run::decode_all(asset);
-  if (!decoded) return decoded.error();
-  const auto pipeline = device.make_compute(draw::shaders::decode(), {});
-  if (!pipeline) return pipeline.error();
+  TRY_LET(decoded, run::decode_all(asset));
+  TRY_LET(pipeline, device.make_compute(draw::shaders::decode(), {}));
   constexpr std::uint64_t kChunkWords = 4u << 20;
-  auto output = device.make_buffer(kChunkWords * 4, draw::Memory::kDevice);
-  if (!output) return output.error();
-  auto entries_buffer = device.make_buffer(std::uint64_t{scene.cluster_count} * 8, draw::Memory::kDevice);
-  if (!entries_buffer) return entries_buffer.error();
-  auto frame_buffer = device.make_buffer(sizeof(draw::GpuFrame), draw::Memory::kDevice);
-  if (!frame_buffer) return frame_buffer.error();
+  TRY_LET(output, device.make_buffer(kChunkWords * 4, draw::Memory::kDevice));
+  TRY_LET(entries_buffer, device.make_buffer(std::uint64_t{scene.cluster_count} * 8, draw::Memory::kDevice));
+  TRY_LET(frame_buffer, device.make_buffer(sizeof(draw::GpuFrame), draw::Memory::kDevice));
 
   std::vector<std::uint32_t> mesh_of(asset.clusters().size(), 0);
   for (std::size_t m = 0; m < asset.meshes().size(); ++m) {
@@ -65,7 +61,7 @@ Result<Comparison> compare_decode(draw::Device& device, const draw::GpuScene& sc
   frame.pages = scene.pages.address();
   frame.retry_clusters = entries_buffer->address();
   frame.clipped = output->address();
-  if (const Status s = device.upload(*frame_buffer, draw::bytes_of(frame)); !s) return s.error();
+  TRY(device.upload(*frame_buffer, draw::bytes_of(frame)));
 
   Comparison out;
   std::vector<std::array<std::uint32_t, 2>> entries(asset.clusters().size());
@@ -83,19 +79,18 @@ Result<Comparison> compare_decode(draw::Device& device, const draw::GpuScene& sc
     }
     const std::span<const std::uint8_t> bytes(reinterpret_cast<const std::uint8_t*>(entries.data()),
                                               entries.size() * 8);
-    if (const Status s = device.upload(*entries_buffer, bytes); !s) return s.error();
-    auto list = draw::Commands::begin(device);
-    if (!list) return list.error();
+    TRY(device.upload(*entries_buffer, bytes));
+    TRY_LET(list, draw::Commands::begin(device));
     const auto count = static_cast<std::uint32_t>(end - first);
     const DecodePush push{frame_buffer->address(), 0, 0, static_cast<std::uint32_t>(first), count};
     list->fill(*output, 0, output->bytes(), 0xCDCDCDCDu);
     list->barrier();
     list->dispatch(*pipeline, draw::bytes_of(push), count);
     list->barrier();
-    if (const auto ran = list->run(); !ran) return ran.error();
+    TRY(list->run());
     words.resize(used);
     const std::span<std::uint8_t> target(reinterpret_cast<std::uint8_t*>(words.data()), words.size() * 4);
-    if (const Status s = device.download(*output, target); !s) return s.error();
+    TRY(device.download(*output, target));
     for (std::size_t c = first; c < end; ++c) {
       ++out.items;
       const std::vector<std::uint32_t>& want = expected[c - first];
@@ -113,13 +108,10 @@ Result<Comparison> compare_decode(draw::Device& device, const draw::GpuScene& sc
 Result<CutComparison> compare_frame(draw::Renderer& renderer, const run::Asset& asset, const run::Camera& camera,
                                     double pixel_error, const run::AttributeBounds& bounds) {
   CutComparison out;
-  const auto depth = draw::depth_of_scene(asset, camera);
-  if (!depth) return depth.error();
-  auto frame = renderer.draw(camera, pixel_error, *depth);
-  if (!frame) return frame.error();
+  TRY_LET(depth, draw::depth_of_scene(asset, camera));
+  TRY_LET(frame, renderer.draw(camera, pixel_error, *depth));
   out.frame = std::move(*frame);
-  const auto cut = renderer.read_cut();
-  if (!cut) return cut.error();
+  TRY_LET(cut, renderer.read_cut());
 
   const std::vector<run::ClusterInstance> expected = run::select_flat(asset, camera, pixel_error, bounds);
   out.cut.items = expected.size();
@@ -133,11 +125,9 @@ Result<CutComparison> compare_frame(draw::Renderer& renderer, const run::Asset& 
   if (std::adjacent_find(cut->begin(), cut->end()) != cut->end()) note(out.cut, "a cluster is drawn twice");
   if (out.frame.overflow != 0) note(out.cut, "overflow of " + draw::describe_overflow(out.frame.overflow));
 
-  if (const Status s = renderer.redraw_in_order(); !s) return s.error();
-  const auto pixels = renderer.read_pixels();
-  if (!pixels) return pixels.error();
-  const auto reference = draw::draw_cut(asset, expected, camera, *renderer.scene().alpha_masks);
-  if (!reference) return reference.error();
+  TRY(renderer.redraw_in_order());
+  TRY_LET(pixels, renderer.read_pixels());
+  TRY_LET(reference, draw::draw_cut(asset, expected, camera, *renderer.scene().alpha_masks));
   out.pixels.items = reference->pixel_count();
   const auto key_at = [](const draw::VisibilityBuffer& buffer, std::span<const run::ClusterInstance> items,
                          std::size_t i) {
@@ -157,17 +147,12 @@ Result<CutComparison> compare_frame(draw::Renderer& renderer, const run::Asset& 
 
 Result<HardwareComparison> compare_hardware(draw::Renderer& renderer, const run::Asset& asset,
                                             const run::Camera& camera, double pixel_error) {
-  const auto depth = draw::depth_of_scene(asset, camera);
-  if (!depth) return depth.error();
-  const auto frame = renderer.draw(camera, pixel_error, *depth);
-  if (!frame) return frame.error();
-  const auto cut = renderer.read_cut();
-  if (!cut) return cut.error();
-  const auto pixels = renderer.read_pixels_of_cut();
-  if (!pixels) return pixels.error();
+  TRY_LET(depth, draw::depth_of_scene(asset, camera));
+  TRY_LET(frame, renderer.draw(camera, pixel_error, *depth));
+  TRY_LET(cut, renderer.read_cut());
+  TRY_LET(pixels, renderer.read_pixels_of_cut());
   const std::vector<run::ClusterInstance> expected = run::select_flat(asset, camera, pixel_error);
-  const auto reference = draw::draw_cut(asset, expected, camera, *renderer.scene().alpha_masks);
-  if (!reference) return reference.error();
+  TRY_LET(reference, draw::draw_cut(asset, expected, camera, *renderer.scene().alpha_masks));
   return HardwareComparison{frame->hardware_items == expected.size() && *cut == expected,
                             measure_distance(*reference, *pixels, camera.is_orthographic)};
 }

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "base/parallel.h"
+#include "base/try.h"
 #include "draw/raster/coverage.h"
 #include "draw/raster/cut_pages.h"
 #include "draw/raster/legend.h"
@@ -56,8 +57,7 @@ std::vector<std::uint32_t> first_triangles(const run::Asset& asset, std::span<co
 
 Result<std::vector<PixelPoint>> unproject(const run::Asset& asset, std::span<const run::ClusterInstance> cut,
                                           const draw::VisibilityBuffer& drawn, const draw::Projection& projection) {
-  const auto pages = draw::CutPages::load(asset, cut);
-  if (!pages) return pages.error();
+  TRY_LET(pages, draw::CutPages::load(asset, cut));
   std::vector<std::vector<std::uint32_t>> pixels_of(cut.size());
   for (std::size_t i = 0; i < drawn.pixel_count(); ++i) {
     if (drawn.item[i] < cut.size()) pixels_of[drawn.item[i]].push_back(static_cast<std::uint32_t>(i));
@@ -206,8 +206,7 @@ bool may_cross_near_around(const run::Asset& asset, const draw::Projection& proj
 /// The cut with its back faces too: what a ray meets at all.
 Result<draw::VisibilityBuffer> draw_both_sides(const run::Asset& asset, std::span<const run::ClusterInstance> cut,
                                                const draw::Projection& projection) {
-  const auto pages = draw::CutPages::load(asset, cut);
-  if (!pages) return pages.error();
+  TRY_LET(pages, draw::CutPages::load(asset, cut));
   draw::VisibilityBuffer out = draw::make_visibility_buffer(projection.size.width, projection.size.height);
   for (std::size_t item = 0; item < cut.size(); ++item) {
     const format::InstanceRecord& instance = asset.instances()[cut[item].instance.value];
@@ -252,12 +251,9 @@ Result<Pictures> draw_pictures(const run::Asset& asset, const PictureSource& sou
                                const draw::AlphaMasks& masks) {
   Pictures out;
   const std::vector<run::ClusterInstance> finest = finest_cut(asset);
-  auto full = draw::draw_cut(asset, finest, camera, masks);
-  if (!full) return full.error();
-  auto cut_points = unproject(asset, cut, drawn, projection);
-  if (!cut_points) return cut_points.error();
-  auto full_points = unproject(asset, finest, *full, projection);
-  if (!full_points) return full_points.error();
+  TRY_LET(full, draw::draw_cut(asset, finest, camera, masks));
+  TRY_LET(cut_points, unproject(asset, cut, drawn, projection));
+  TRY_LET(full_points, unproject(asset, finest, *full, projection));
   out.full = std::move(*full);
   out.cut_points = std::move(*cut_points);
   out.full_points = std::move(*full_points);
@@ -342,8 +338,7 @@ Result<std::uint64_t> count_holes(const run::Asset& asset, std::span<const run::
     if (!is_covered_around(pictures.truth, x, y)) continue;
     if (may_cross_near_around(asset, projection, pictures.truth_points, back, tolerance, x, y)) continue;
     if (!both_sides) {
-      auto buffer = draw_both_sides(asset, cut, projection);
-      if (!buffer) return buffer.error();
+      TRY_LET(buffer, draw_both_sides(asset, cut, projection));
       both_sides = std::move(*buffer);
     }
     if (both_sides->item[i] != draw::VisibilityBuffer::kNothing) ++holes;
@@ -410,11 +405,9 @@ void judge_displacements(const draw::VisibilityBuffer& drawn, const Pictures& pi
 Result<PictureReport> judge_picture(const run::Asset& asset, const PictureSource& source,
                                     std::span<const run::ClusterInstance> cut, const draw::VisibilityBuffer& drawn,
                                     const run::Camera& camera, double pixel_error, const draw::AlphaMasks& masks) {
-  auto projection = draw::make_projection(camera);
-  if (!projection) return projection.error();
+  TRY_LET(projection, draw::make_projection(camera));
   projection->far_distance = draw::scene_depth(asset, *projection);
-  const auto pictures = draw_pictures(asset, source, cut, drawn, camera, *projection, masks);
-  if (!pictures) return pictures.error();
+  TRY_LET(pictures, draw_pictures(asset, source, cut, drawn, camera, *projection, masks));
   const Displacements moves = source.painted.empty()
                                   ? find_displacements(asset, source, cut, *pictures, *projection, pixel_error)
                                   : find_painted_displacements(asset, source, cut, *pictures, *projection, pixel_error);
@@ -422,8 +415,7 @@ Result<PictureReport> judge_picture(const run::Asset& asset, const PictureSource
   PictureReport out;
   compare_with_full(drawn, *pictures, out);
   judge_displacements(drawn, *pictures, moves, source.tolerance, out);
-  const auto holes = count_holes(asset, cut, drawn, *pictures, moves.back, *projection, source.tolerance);
-  if (!holes) return holes.error();
+  TRY_LET(holes, count_holes(asset, cut, drawn, *pictures, moves.back, *projection, source.tolerance));
   out.holes = *holes;
   return out;
 }

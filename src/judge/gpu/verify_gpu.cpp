@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/file.h"
+#include "base/try.h"
 #include "draw/gpu/pass_plan.h"
 #include "judge/gpu/compare_frame.h"
 #include "judge/gpu/judge_picture.h"
@@ -78,8 +79,7 @@ Status judge_hardware(draw::Device& device, const draw::GpuScene& scene, const r
   raster.alpha_mask = scene.has_alpha_mask;
   raster.hardware = by_mesh_shaders ? draw::HardwarePath::kMesh : draw::HardwarePath::kVertex;
   raster.hardware_pixels = 0.0F;
-  auto renderer = draw::Renderer::make(device, scene, raster);
-  if (!renderer) return renderer.error();
+  TRY_LET(renderer, draw::Renderer::make(device, scene, raster));
   std::vector<NamedCamera> cameras = adversarial_cameras(asset, raster.width, raster.height);
   for (NamedCamera named : options.path) {
     named.camera.width = raster.width;
@@ -88,8 +88,7 @@ Status judge_hardware(draw::Device& device, const draw::GpuScene& scene, const r
   }
   std::uint64_t most_differing = 0, most_astray = 0;
   for (const NamedCamera& named : cameras) {
-    const auto result = compare_hardware(*renderer, asset, named.camera, options.pixel_error);
-    if (!result) return result.error();
+    TRY_LET(result, compare_hardware(*renderer, asset, named.camera, options.pixel_error));
     const PictureDistance& picture = result->picture;
     check.items += picture.covered;
     most_differing = std::max(most_differing, picture.differing);
@@ -194,10 +193,8 @@ Result<Renderers> make_renderers(const draw::Device& device, const draw::GpuScen
   plain.frustum = plain.occlusion = false;
   draw::RendererOptions culling = plain;
   culling.frustum = culling.occlusion = true;
-  auto renderer = draw::Renderer::make(device, scene, plain);
-  if (!renderer) return renderer.error();
-  auto culler = draw::Renderer::make(device, scene, culling);
-  if (!culler) return culler.error();
+  TRY_LET(renderer, draw::Renderer::make(device, scene, plain));
+  TRY_LET(culler, draw::Renderer::make(device, scene, culling));
   return Renderers{std::move(*renderer), std::move(*culler)};
 }
 
@@ -246,12 +243,10 @@ class CameraJudge {
   }
 
   Status compare_with_cpu(Renderers& renderers, const NamedCamera& named, const std::string& where) {
-    const auto frame = compare_frame(renderers.plain, asset_, named.camera, options_.pixel_error);
-    if (!frame) return frame.error();
+    TRY_LET(frame, compare_frame(renderers.plain, asset_, named.camera, options_.pixel_error));
     add(checks_.cuts, frame->cut, where);
     add(checks_.pixels, frame->pixels, where);
-    const auto culled = compare_frame(renderers.culling, asset_, named.camera, options_.pixel_error);
-    if (!culled) return culled.error();
+    TRY_LET(culled, compare_frame(renderers.culling, asset_, named.camera, options_.pixel_error));
     add(checks_.culled, culled->cut, where);
     add(checks_.culled, culled->pixels, where);
     return Ok{};
@@ -263,8 +258,7 @@ class CameraJudge {
     const auto drawn = renderer.read_pixels();
     if (!cut) return cut.error();
     if (!drawn) return drawn.error();
-    const auto picture = judge_picture(asset_, source_, *cut, *drawn, named.camera, options_.pixel_error, masks_);
-    if (!picture) return picture.error();
+    TRY_LET(picture, judge_picture(asset_, source_, *cut, *drawn, named.camera, options_.pixel_error, masks_));
     count(*picture, where);
     report_.cameras.push_back({named, without_maps(*picture), {}});
     if (!worst_.camera || picture->largest_share > worst_.picture.largest_share) {
@@ -327,41 +321,34 @@ Result<GpuVerifyReport> verify_on_gpu(const run::Asset& asset, const scene::Scen
                                       const GpuVerifyOptions& options) {
   const std::optional<scene::Scene> split = split_source(asset, whole);
   const scene::Scene& source = split ? *split : whole;
-  auto device = draw::Device::open(options.device);
-  if (!device) return device.error();
+  TRY_LET(device, draw::Device::open(options.device));
   draw::ImageBudget images(options.max_decoded);
-  auto scene = draw::upload_scene(*device, asset, {}, {}, &images);
-  if (!scene) return scene.error();
+  TRY_LET(scene, draw::upload_scene(*device, asset, {}, {}, &images));
   GpuVerifyReport out;
   out.device = device->info();
   out.warnings = scene->alpha_masks->warnings;
 
   Checks checks;
-  const auto decode = compare_decode(*device, *scene, asset);
-  if (!decode) return decode.error();
+  TRY_LET(decode, compare_decode(*device, *scene, asset));
   add(checks.decoded, *decode, "decode");
 
   const std::vector<SourceSurface> meshes = source_surfaces(source);
   const Promise promise = promise_of(asset, meshes, *scene);
-  const auto every_cluster = run::decode_all(asset);
-  if (!every_cluster) return every_cluster.error();
+  TRY_LET(every_cluster, run::decode_all(asset));
   // Culling and hardware raster are judged whether or not the scene calls for them.
-  const auto plan =
-      draw::plan_passes(*scene, device->info(), options.sizes[0].width, options.sizes[0].height, {"occlusion"});
-  if (!plan) return plan.error();
+  TRY_LET(plan,
+          draw::plan_passes(*scene, device->info(), options.sizes[0].width, options.sizes[0].height, {"occlusion"}));
   out.plan = draw::describe_plan(*plan, "  ");
-  auto renderers = make_renderers(*device, *scene, *plan);
-  if (!renderers) return renderers.error();
+  TRY_LET(renderers, make_renderers(*device, *scene, *plan));
   for (GpuCheck* check : {&checks.by_vertex, &checks.by_mesh}) {
     const bool by_mesh_shaders = check == &checks.by_mesh;
-    const Status s = judge_hardware(*device, *scene, asset, options, by_mesh_shaders, *check);
-    if (!s) return s.error();
+    TRY_LET(s, judge_hardware(*device, *scene, asset, options, by_mesh_shaders, *check));
   }
   const std::vector<PaintedSurface> painted = painted_surfaces(asset, source);
   const PictureSource truth{meshes, *every_cluster, promise.tolerance, painted};
   CameraJudge judge(asset, options, truth, promise, *scene->alpha_masks, checks, out);
   for (const PictureSize size : options.sizes) {
-    if (const Status s = judge.judge_size(*renderers, size); !s) return s.error();
+    TRY(judge.judge_size(*renderers, size));
   }
   describe_promises(promise, out, options.pixel_error, checks);
   out.checks = checks.in_order();

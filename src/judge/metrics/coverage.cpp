@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "base/parallel.h"
+#include "base/try.h"
 #include "draw/textures/texture_image.h"
 #include "run/decode/decode.h"
 #include "run/unpack/unpack.h"
@@ -325,8 +326,7 @@ Result<std::vector<CoveringTriangle>> covering_triangles(const run::Asset& asset
   for (const ClusterId cluster : clusters) {
     const std::uint32_t id = asset.groups()[asset.clusters()[cluster.value].coarser_group].page;
     if (id != loaded) {
-      Result<run::PageBytes> next = run::load_page(asset, PageId{id});
-      if (!next) return next.error();
+      TRY_LET(next, run::load_page(asset, PageId{id}));
       page.emplace(std::move(*next));
       loaded = id;
     }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/try.h"
 #include "judge/metrics/metrics.h"
 
 #include <algorithm>
@@ -71,8 +72,7 @@ Result<Surface> surface_of_clusters(const run::Asset& asset, MeshId mesh, std::s
   run::DecodedCluster cluster;
   for (std::size_t i = 0; i < order.size();) {
     const std::uint32_t id = page_of(order[i]);
-    const auto page = run::load_page(asset, PageId{id});
-    if (!page) return page.error();
+    TRY_LET(page, run::load_page(asset, PageId{id}));
     for (; i < order.size() && page_of(order[i]) == id; ++i) {
       run::decode_cluster(asset, *page, clusters[order[i]], cluster);
       put_cluster(asset.meshes()[mesh.value], cluster, places[order[i]], surface);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "base/try.h"
 #include "judge/metrics/drawn_triangles.h"
 #include "judge/metrics/triangle_area.h"
 #include "judge/metrics/triangle_corners.h"
@@ -137,8 +138,7 @@ Result<ShadedSurface> shaded_surface_of_clusters(const run::Asset& asset, MeshId
   std::vector<run::DecodedCluster> decoded(asset.clusters().size());  // of the cut alone: the others stay empty
   for (std::size_t i = 0; i < order.size();) {
     const std::uint32_t id = page_of(order[i]);
-    const auto page = run::load_page(asset, PageId{id});
-    if (!page) return page.error();
+    TRY_LET(page, run::load_page(asset, PageId{id}));
     for (; i < order.size() && page_of(order[i]) == id; ++i) {
       run::decode_cluster(asset, *page, order[i], decoded[order[i].value]);
     }

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/try.h"
 #include "format/grid.h"
 #include "judge/validate/borders.h"
 #include "judge/validate/exact.h"
@@ -70,8 +71,7 @@ class MeshGeometry {
     for (std::uint32_t c = mesh_.first_cluster; c < mesh_.first_cluster + mesh_.cluster_count; ++c) {
       const std::uint32_t id = asset_.groups()[asset_.clusters()[c].coarser_group].page;
       if (id != page_id) {
-        Result<run::PageBytes> loaded = run::load_page(asset_, PageId(id));
-        if (!loaded) return loaded.error();
+        TRY_LET(loaded, run::load_page(asset_, PageId(id)));
         page = std::move(*loaded);
         page_id = id;
       }

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/try.h"
 #include "judge/metrics/coverage.h"
 #include "judge/metrics/metrics.h"
 #include "judge/metrics/surface_bracket.h"
@@ -75,8 +76,7 @@ class Brackets {
         is_near_(asset.meshes()[mesh.value].cluster_count, 0) {}
 
   Result<CutBracket> look_at(std::span<const ClusterId> clusters, CutBracket cut) {
-    const Result<Surface> surface = surface_of_clusters(asset_, mesh_, clusters);
-    if (!surface) return surface.error();
+    TRY_LET(surface, surface_of_clusters(asset_, mesh_, clusters));
     if (truth_.triangles.empty() || surface->triangles.empty()) {
       if (truth_.triangles.empty() != surface->triangles.empty()) cut.lower = cut.upper = HUGE_VAL;
       return cut;
@@ -192,8 +192,7 @@ Result<std::vector<CutBracket>> bracket_cuts(const run::Asset& asset, MeshId mes
     std::vector<ClusterId> clusters = run::select_uniform(asset, mesh, threshold).clusters;
     return is_mixed ? clusters_of_others(asset, clusters) : clusters;
   };
-  Result<Surface> truth = is_mixed ? surface_of_clusters(asset, mesh, drawn_at(-1.0)) : surface_of_source(source);
-  if (!truth) return truth.error();
+  TRY_LET(truth, is_mixed ? surface_of_clusters(asset, mesh, drawn_at(-1.0)) : surface_of_source(source));
   if (is_mixed && truth->triangles.empty()) return out;
   Brackets brackets(asset, mesh, std::move(*truth), budget);
   const double rounding = position_rounding(record) + (is_mixed ? double{record.level0_deviation} : 0.0);
@@ -207,8 +206,7 @@ Result<std::vector<CutBracket>> bracket_cuts(const run::Asset& asset, MeshId mes
     cut.threshold = threshold;
     cut.stored = stored_error_of(asset, record, clusters);
     cut.rounding = rounding;
-    const Result<CutBracket> bracket = brackets.look_at(clusters, cut);
-    if (!bracket) return bracket.error();
+    TRY_LET(bracket, brackets.look_at(clusters, cut));
     out.push_back(*bracket);
     previous = std::move(clusters);
   }

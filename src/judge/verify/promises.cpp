@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/try.h"
 #include "format/names.h"
 #include "judge/metrics/coverage.h"
 #include "judge/metrics/shaded_surface.h"
@@ -113,8 +114,7 @@ Result<std::vector<CutDeviation>> measure_promised_cuts(const run::Asset& asset,
     const run::UniformCut cut = run::select_uniform(tables, mesh, threshold);
     if (cut.clusters == previous) continue;
     previous = cut.clusters;
-    const Result<ShadedSurface> surface = shaded_surface_of_clusters(asset, mesh, cut.clusters);
-    if (!surface) return surface.error();
+    TRY_LET(surface, shaded_surface_of_clusters(asset, mesh, cut.clusters));
     double stored = level0_of(asset, mesh, promise);
     for (const ClusterId id : cut.clusters) {
       const std::uint32_t group = asset.clusters()[id.value].own_group;

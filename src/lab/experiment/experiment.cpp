@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/nearest_name.h"
+#include "base/try.h"
 #include "base/vec.h"
 #include "lab/experiment/careless.h"
 #include "lab/experiment/openmesh_decimater.h"
@@ -85,7 +86,7 @@ Result<Care> parse_care(std::string_view text) {
   if (text == "all") return care;
   do {
     const std::size_t comma = text.find(',');
-    if (const Status set = set_care(text.substr(0, comma), care); !set) return set.error();
+    TRY(set_care(text.substr(0, comma), care));
     text.remove_prefix(comma == std::string_view::npos ? text.size() : comma + 1);
     if (text.empty() && comma != std::string_view::npos) return usage("ends with a comma");
   } while (!text.empty());

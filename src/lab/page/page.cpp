@@ -8,6 +8,7 @@
 
 #include "app/doctor/diagnosis.h"
 #include "base/printable.h"
+#include "base/try.h"
 #include "lab/page/charts.h"
 #include "lab/page/markup.h"
 #include "lab/page/numbers.h"
@@ -359,7 +360,7 @@ Status write_report(const ReportData& data, const std::filesystem::path& folder,
   std::filesystem::create_directories(plots, failed);
   if (failed) return Error{ErrorCode::kIo, plots.string(), failed.message()};
   for (const PlotFile& file : write_plots(data)) {
-    if (const Status status = files.write(plots / file.name, as_bytes(file.svg)); !status) return status.error();
+    TRY(files.write(plots / file.name, as_bytes(file.svg)));
   }
   return files.write(folder / "index.html", as_bytes(write_page(data, options)));
 }

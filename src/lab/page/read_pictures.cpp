@@ -8,6 +8,7 @@
 
 #include "base/file.h"
 #include "base/printable.h"
+#include "base/try.h"
 
 namespace meshlode::lab::page {
 
@@ -25,8 +26,7 @@ Status read_picture(ReportData& data, const std::filesystem::path& folder, const
   static constexpr std::array<std::uint8_t, 8> kPng = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n'};
   const std::string where = "picture " + printable(path);
   if (!is_inside(path)) return Error{ErrorCode::kInvalid, where, "leads out of the report's folder"};
-  auto file = MappedFile::open(folder / path);
-  if (!file) return file.error();
+  TRY_LET(file, MappedFile::open(folder / path));
   const std::span<const std::uint8_t> bytes = file->bytes();
   if (bytes.size() > kMostPictureBytes) return Error{ErrorCode::kInvalid, where, "more than 64 MiB"};
   if (bytes.size() < kPng.size() || !std::equal(kPng.begin(), kPng.end(), bytes.begin())) {
@@ -49,7 +49,7 @@ Status read_pictures(ReportData& data, const std::filesystem::path& folder) {
   }
   paths.erase("");
   for (const std::string& path : paths) {
-    if (const Status status = read_picture(data, folder, path); !status) return status.error();
+    TRY(read_picture(data, folder, path));
   }
   return Ok{};
 }

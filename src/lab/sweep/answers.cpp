@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "base/nearest_name.h"
+#include "base/try.h"
 
 namespace meshlode::lab {
 
@@ -164,13 +165,11 @@ Result<Wish> parse_wish(std::string_view text) {
     at = end + 1;
     if (part.ends_with(" min") || part.ends_with(" max")) {
       if (wish.goal != nullptr) return wrong_wish("give one goal");
-      const auto goal = parse_goal(part);
-      if (!goal) return goal.error();
+      TRY_LET(goal, parse_goal(part));
       wish.goal = *goal;
       continue;
     }
-    auto bound = parse_bound(part);
-    if (!bound) return bound.error();
+    TRY_LET(bound, parse_bound(part));
     wish.bounds.push_back(*bound);
   }
   if (wish.goal == nullptr) return wrong_wish("give a goal, such as 'bytes min'");

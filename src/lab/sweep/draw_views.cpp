@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "app/compare/pictures.h"
+#include "base/try.h"
 #include "draw/gpu/render.h"
 #include "draw/textures/texture_set.h"
 #include "draw/textures/texture_use.h"
@@ -41,8 +42,7 @@ struct Drawable {
   [[nodiscard]] Result<draw::Image> shade(const Cut& cut, const run::Camera& camera) const {
     if (!masks.damage) return masks.damage.error();
     if (!textures.damage) return textures.damage.error();
-    const auto visibility = draw::draw_cut(asset, cut, camera, masks);
-    if (!visibility) return visibility.error();
+    TRY_LET(visibility, draw::draw_cut(asset, cut, camera, masks));
     return draw::shade_view(asset, cut, camera, *visibility, draw::View::kShaded, textures);
   }
 };
@@ -88,10 +88,8 @@ Status draw_full(const run::Asset& baseline, ViewSet& set) {
   set.full.clear();
   set.references.clear();
   for (const View& view : set.views) {
-    const auto cut = select_cut(baseline, view.camera, kFullResolution);
-    if (!cut) return cut.error();
-    auto image = drawable.shade(*cut, view.camera);
-    if (!image) return image.error();
+    TRY_LET(cut, select_cut(baseline, view.camera, kFullResolution));
+    TRY_LET(image, drawable.shade(*cut, view.camera));
     set.references.emplace_back(image->rgba, image->width, image->height);
     set.full.push_back(std::move(*image));
   }
@@ -103,10 +101,8 @@ Status draw_point(const run::Asset& asset, const ViewSet& set, double pixel_erro
   const Drawable drawable(asset, set.max_decoded);
   for (std::size_t v = 0; v < set.views.size(); ++v) {
     const View& view = set.views[v];
-    const auto cut = select_cut(asset, view.camera, pixel_error);
-    if (!cut) return cut.error();
-    const auto image = drawable.shade(*cut, view.camera);
-    if (!image) return image.error();
+    TRY_LET(cut, select_cut(asset, view.camera, pixel_error));
+    TRY_LET(image, drawable.shade(*cut, view.camera));
     PictureRow row;
     row.view = view.name;
     row.clusters = cut->size();
@@ -133,10 +129,8 @@ Status time_frames(const run::Asset& asset, const ViewSet& set, double pixel_err
   const run::Camera& camera = set.views[0].camera;
   const Drawable drawable(asset, set.max_decoded);
   const auto start = std::chrono::steady_clock::now();
-  const auto cut = select_cut(asset, camera, pixel_error);
-  if (!cut) return cut.error();
-  const auto visibility = draw::draw_cut(asset, *cut, camera, drawable.masks);
-  if (!visibility) return visibility.error();
+  TRY_LET(cut, select_cut(asset, camera, pixel_error));
+  TRY_LET(visibility, draw::draw_cut(asset, *cut, camera, drawable.masks));
   out.figures["frame_cpu_seconds"] = seconds_since(start);
   if (!has_device) return Ok{};
   draw::GpuRenderOptions options;

@@ -10,6 +10,7 @@
 
 #include "app/report/info.h"
 #include "base/hash.h"
+#include "base/try.h"
 #include "judge/metrics/attribute_drift.h"
 #include "judge/metrics/cut_judge.h"
 #include "judge/metrics/cut_search.h"
@@ -175,8 +176,7 @@ Status SourceMeasure::measure(const run::Asset& asset, Measurement& out) {
   if (source_.meshes.size() != asset.meshes().size()) {
     return Error{ErrorCode::kInvalid, "", "the scene and the asset have different numbers of meshes"};
   }
-  const auto decoded = run::decode_all(asset);
-  if (!decoded) return decoded.error();
+  TRY_LET(decoded, run::decode_all(asset));
   describe_sizes(asset, out);
   for (const double threshold : kThresholds) out.cuts.push_back({threshold, 0, 0.0, 0.0, 0.0, {}, {}});
   for (const double x : kEqualMax) {

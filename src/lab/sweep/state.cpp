@@ -13,6 +13,7 @@
 
 #include "base/file.h"
 #include "base/hash.h"
+#include "base/try.h"
 #include "lab/sweep/measurement_json.h"
 
 namespace meshlode::lab {
@@ -43,8 +44,7 @@ Result<State> State::open(const std::filesystem::path& file, const std::string& 
   State state(file, fingerprint);
   std::error_code error;
   if (!std::filesystem::exists(file, error)) return state;
-  const Result<MappedFile> mapped = MappedFile::open(file);
-  if (!mapped) return mapped.error();
+  TRY_LET(mapped, MappedFile::open(file));
   const std::string_view text(reinterpret_cast<const char*>(mapped->bytes().data()), mapped->bytes().size());
   for (std::size_t at = 0; at < text.size();) {
     const std::size_t end = text.find('\n', at);

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "base/file.h"
+#include "base/try.h"
 #include "format/names.h"
 #include "lab/child/child.h"
 #include "lab/sweep/collect.h"
@@ -86,8 +87,7 @@ class Sweep {
     if (const Measurement* failed = state_.find(MeasurementKind::kBuild, {}, 1); failed && !failed->error.empty()) {
       return Error{ErrorCode::kBuildFailed, options_.scene.string(), failed->error};
     }
-    auto asset = run::Asset::open(file, options_.max_decoded);
-    if (!asset) return asset.error();
+    TRY_LET(asset, run::Asset::open(file, options_.max_decoded));
     const SceneFacts facts = facts_of(*asset);
     result_.knobs = make_knobs(facts, options_.knobs);
     result_.idle_knobs = find_idle_knobs(facts, options_.knobs);
@@ -215,8 +215,7 @@ class Sweep {
     const fs::path file = work_.path() / (is_baseline ? "baseline.lode" : "point.lode");
     if (Status built = build(result_.points[group.points.front()].point, file, round_); !built) return built;
     if (has_failed(group)) return Ok{};
-    auto asset = run::Asset::open(file, options_.max_decoded);
-    if (!asset) return asset.error();
+    TRY_LET(asset, run::Asset::open(file, options_.max_decoded));
     const Status looked = look_at(*asset, group);
     std::error_code ignored;
     if (!is_baseline) fs::remove(file, ignored);
@@ -270,8 +269,7 @@ class Sweep {
     }
     fs::remove(file, ignored);
     const auto start = Clock::now();
-    const Result<ChildRun> run = run_child(options_.program, arguments);
-    if (!run) return run.error();
+    TRY_LET(run, run_child(options_.program, arguments));
     if (was_interrupted(*run)) return Error{ErrorCode::kIo, "sweep", "interrupted; run it again to go on"};
     Measurement m;
     m.kind = MeasurementKind::kBuild;
@@ -305,12 +303,10 @@ class Sweep {
 
   Status time_loading(const fs::path& file, Measurement& m) const {
     const auto start = Clock::now();
-    const auto asset = run::Asset::open(file, options_.max_decoded);
-    if (!asset) return asset.error();
+    TRY_LET(asset, run::Asset::open(file, options_.max_decoded));
     m.figures["load_seconds"] = seconds_since(start);
     const auto opened = Clock::now();
-    const auto decoded = run::decode_all(*asset);
-    if (!decoded) return decoded.error();
+    TRY_LET(decoded, run::decode_all(*asset));
     m.figures["decode_seconds"] = seconds_since(opened);
     return Ok{};
   }
@@ -432,11 +428,9 @@ Status run_sweep(const SweepOptions& options, const SweepWatcher& watcher, const
   import.allow_outside = options.allow_outside;
   std::vector<FileId> read;
   import.files_read = &read;
-  Result<scene::Scene> scene = scene::import_scene(options.scene, import);
-  if (!scene) return scene.error();
+  TRY_LET(scene, scene::import_scene(options.scene, import));
   if (Status made = make_report_folder(options.report, read); !made) return made;
-  Result<WorkFolder> work = WorkFolder::make(options.report);
-  if (!work) return work.error();
+  TRY_LET(work, WorkFolder::make(options.report));
   SweepResult result;
   result.scene = summary_of(*scene);
   result.fineness = choose_fineness(options.budget, result.scene.meshes, result.scene.vertices);
@@ -446,8 +440,7 @@ Status run_sweep(const SweepOptions& options, const SweepWatcher& watcher, const
   result.machine = {
       machine.processor, machine.system, options.jobs > 0 ? options.jobs : machine.threads, machine.memory_bytes, {}};
   const std::string fingerprint = fingerprint_of(options, result);
-  Result<State> state = State::open(state_file_of(options.report), fingerprint);
-  if (!state) return state.error();
+  TRY_LET(state, State::open(state_file_of(options.report), fingerprint));
   Sweep sweep(options, watcher, std::move(*scene), std::move(*state), std::move(*work), fingerprint.substr(0, 8),
               result);
   return sweep.run([&](const SweepResult& so_far) {

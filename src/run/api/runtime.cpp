@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "base/try.h"
 #include "run/api/camera_of_view.h"
 #include "run/decode/decode.h"
 #include "run/read/asset.h"
@@ -142,8 +143,7 @@ Status AssetFile::choose_promise(format::Promise promise) {
 }
 
 Result<std::vector<DrawItem>> AssetFile::select_view(const View& view, double pixel_error) const {
-  const auto camera = make_camera(view);
-  if (!camera) return camera.error();
+  TRY_LET(camera, make_camera(view));
   if (!(pixel_error >= 0.0) || !std::isfinite(pixel_error)) return usage("pixel_error", "is not a number >= 0");
   const std::vector<run::ClusterInstance> drawn = run::select_bvh(state_->asset, *camera, pixel_error);
   std::vector<DrawItem> items;
@@ -169,8 +169,7 @@ std::uint32_t AssetFile::page_of(std::uint32_t cluster) const {
 
 Result<PageBytes> AssetFile::load_page(std::uint32_t page) const {
   if (page >= state_->asset.pages().size()) return usage("page", "does not exist");
-  auto bytes = run::load_page(state_->asset, PageId(page));
-  if (!bytes) return bytes.error();
+  TRY_LET(bytes, run::load_page(state_->asset, PageId(page)));
   return PageBytes(std::make_unique<PageBytes::State>(PageBytes::State{std::move(*bytes), page, state_.get()}));
 }
 
@@ -179,7 +178,7 @@ Status AssetFile::decode(const PageBytes& page, std::uint32_t cluster, ClusterIn
   std::swap(decoded.channels, out.values);  // reuse what the caller brought
   std::swap(decoded.triangles, out.triangles);
   std::swap(decoded.triangle_material, out.triangle_materials);
-  if (auto status = state_->decode(*page.state_, cluster, decoded); !status) return status.error();
+  TRY(state_->decode(*page.state_, cluster, decoded));
   out.vertex_count = decoded.vertex_count;
   out.triangle_count = decoded.triangle_count;
   out.channel_count = decoded.channel_count;
@@ -193,7 +192,7 @@ Status AssetFile::decode(const PageBytes& page, std::uint32_t cluster, ClusterFl
   run::DecodedCluster decoded;
   std::swap(decoded.triangles, out.triangles);
   std::swap(decoded.triangle_material, out.triangle_materials);
-  if (auto status = state_->decode(*page.state_, cluster, decoded); !status) return status.error();
+  TRY(state_->decode(*page.state_, cluster, decoded));
   const format::GroupRecord& group = state_->asset.groups()[state_->asset.clusters()[cluster].coarser_group];
   run::ClusterAttributes floats;
   run::decode_attributes(state_->asset.meshes()[group.mesh], decoded, floats);

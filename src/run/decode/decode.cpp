@@ -10,6 +10,7 @@
 #include <meshlode/page.h>
 
 #include "base/byte_size.h"
+#include "base/try.h"
 #include "run/decode/octahedral.h"
 #include "run/unpack/processor.h"
 
@@ -421,11 +422,10 @@ Status check_decoded_bytes(const Asset& asset, std::uint64_t bytes) {
 }
 
 Result<std::vector<DecodedCluster>> decode_all(const Asset& asset) {
-  if (Status status = check_decoded_bytes(asset, count_decoded_bytes(asset)); !status) return status.error();
+  TRY(check_decoded_bytes(asset, count_decoded_bytes(asset)));
   std::vector<DecodedCluster> clusters(asset.clusters().size());
   for (std::size_t p = 0; p < asset.pages().size(); ++p) {
-    const auto page = load_page(asset, PageId{p});
-    if (!page) return page.error();
+    TRY_LET(page, load_page(asset, PageId{p}));
     const format::PageRecord& record = asset.pages()[p];
     for (std::uint32_t i = 0; i < record.cluster_count; ++i) {
       const ClusterId id{record.first_cluster + i};

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/byte_size.h"
+#include "base/try.h"
 #include "format/section_columns.h"
 #include "run/read/check_tables.h"
 #include "run/read/file_place.h"
@@ -30,8 +31,7 @@ std::string_view view_text(std::span<const std::uint8_t> bytes) {
 }  // namespace
 
 Result<Asset> Asset::open(const std::filesystem::path& path, std::uint64_t max_decoded) {
-  auto file = MappedFile::open(path);
-  if (!file) return file.error();
+  TRY_LET(file, MappedFile::open(path));
   Asset asset;
   asset.max_decoded_ = max_decoded;
   asset.bytes_ = file->bytes();
@@ -47,7 +47,7 @@ Result<Asset> Asset::open(const std::filesystem::path& path, std::uint64_t max_d
 Result<Asset> Asset::from_bytes(std::span<const std::uint8_t> bytes) {
   Asset asset;
   asset.bytes_ = bytes;
-  if (Status status = asset.index(); !status) return status.error();
+  TRY(asset.index());
   return asset;
 }
 
@@ -55,7 +55,7 @@ Result<Asset> Asset::from_vector(std::vector<std::uint8_t> bytes) {
   Asset asset;
   asset.bytes_ = bytes;
   asset.storage_ = std::move(bytes);  // moving a vector keeps its buffer, so the view stays valid
-  if (Status status = asset.index(); !status) return status.error();
+  TRY(asset.index());
   return asset;
 }
 
@@ -81,8 +81,7 @@ std::span<const std::uint8_t> Asset::section_bytes(const format::SectionEntry& e
 }
 
 Status Asset::index() {
-  const auto sections = index_sections(bytes_);
-  if (!sections) return sections.error();
+  TRY_LET(sections, index_sections(bytes_));
   using enum format::SectionId;
   // Of a processor of 32 bits no vector is larger, whatever the caller allows.
   std::uint64_t left = std::min<std::uint64_t>(max_decoded_bytes(), std::numeric_limits<std::size_t>::max());

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/hash.h"
+#include "base/try.h"
 #include "format/section_columns.h"
 #include "run/read/file_place.h"
 
@@ -140,13 +141,13 @@ Result<SectionIndex> index_sections(std::span<const std::uint8_t> bytes) {
   SectionIndex index;
   index.header = reinterpret_cast<const format::FileHeader*>(bytes.data());
   if (index.header->magic != format::kMagic) return invalid_header("magic", "this is not a .lode file");
-  if (Status status = check_header(bytes, *index.header); !status) return status.error();
+  TRY(check_header(bytes, *index.header));
   index.entries = {reinterpret_cast<const format::SectionEntry*>(bytes.data() + sizeof(format::FileHeader)),
                    index.header->section_count};
 
   std::uint64_t end = sizeof(format::FileHeader) + index.entries.size_bytes();
   for (const format::SectionEntry& entry : index.entries) {
-    if (Status status = check_extent(bytes, entry, end); !status) return status.error();
+    TRY(check_extent(bytes, entry, end));
     end = entry.offset + entry.bytes;
     const auto known = std::find_if(kKnownSections.begin(), kKnownSections.end(), [&](const KnownSection& section) {
       return static_cast<std::uint32_t>(section.id) == entry.id;
@@ -158,7 +159,7 @@ Result<SectionIndex> index_sections(std::span<const std::uint8_t> bytes) {
       }
       continue;
     }
-    if (Status status = check_known(bytes, entry, known->record_bytes); !status) return status.error();
+    TRY(check_known(bytes, entry, known->record_bytes));
     if (!index.known.emplace(known->id, &entry).second) return invalid_section(entry.id, "id", "is there twice");
   }
   if (end != bytes.size()) return invalid_header("file_bytes", "the last section does not end the file");

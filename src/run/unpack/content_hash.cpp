@@ -4,6 +4,7 @@
 #include <array>
 #include <cstring>
 
+#include "base/try.h"
 #include "run/unpack/unpack.h"
 
 namespace meshlode::run {
@@ -50,8 +51,7 @@ Result<Hash128> hash_asset_content(const Asset& asset, const OtherBytes& other) 
     add_section(id);
   }
   for (std::size_t p = 0; p < asset.pages().size(); ++p) {
-    const auto page = load_page(asset, PageId{p});
-    if (!page) return page.error();
+    TRY_LET(page, load_page(asset, PageId{p}));
     hasher.update(page->bytes());
   }
   add_section(kBlobs);
@@ -68,8 +68,7 @@ Hash128 stated_hash(const Asset& asset) {
 }
 
 Status check_content_hash(const Asset& asset) {
-  const auto hash = hash_asset_content(asset);
-  if (!hash) return hash.error();
+  TRY_LET(hash, hash_asset_content(asset));
   if (*hash == stated_hash(asset)) return Ok{};
   return Error{ErrorCode::kInvalid, "header, field content_hash", "is not that of the content"};
 }

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/hash.h"
+#include "base/try.h"
 #include "run/unpack/check_page.h"
 #include "run/unpack/decompressors.h"
 #include "run/unpack/unpack_page.h"
@@ -41,7 +42,7 @@ Result<PageBytes> load_page(const Asset& asset, PageId page) {
       return page_error(page, "decoded_checksum", "does not match the decoded bytes");
     }
     const PageBytes view(stored);  // offsets are multiples of 16 in bytes that lie at multiples of 8
-    if (Status status = check_page(asset, page, view.words()); !status) return status.error();
+    TRY(check_page(asset, page, view.words()));
     return PageBytes(stored);
   }
 
@@ -57,7 +58,7 @@ Result<PageBytes> load_page(const Asset& asset, PageId page) {
     return page_error(page, "decoded_checksum", "does not match the decoded bytes");
   }
   PageBytes owned(std::move(decoded));
-  if (Status status = check_page(asset, page, owned.words()); !status) return status.error();
+  TRY(check_page(asset, page, owned.words()));
   return owned;
 }
 

@@ -10,6 +10,7 @@
 
 #include "base/file.h"
 #include "base/guarded.h"
+#include "base/try.h"
 #include "scene/count/file_triangles.h"
 #include "scene/import/gltf/gltf_import.h"
 #include "scene/import/polygons/import_polygons.h"
@@ -69,11 +70,10 @@ PolygonReader reader_of(Format format) {
 
 Result<Scene> import_scene(const std::filesystem::path& path, const ImportOptions& options) {
   return guarded(path, [&]() -> Result<Scene> {
-    auto file = MappedFile::open(path);
-    if (!file) return file.error();
+    TRY_LET(file, MappedFile::open(path));
     if (options.files_read != nullptr) options.files_read->push_back(file->id());
     const auto bytes = file->bytes();
-    if (Status scene = check_is_scene(path, bytes); !scene) return scene.error();
+    TRY(check_is_scene(path, bytes));
     const auto format = find_format(path, bytes);
     if (!format) {
       return Error{ErrorCode::kUnsupported, path.string(), "not glTF, GLB, PLY, OBJ or STL, by content or extension"};
@@ -106,9 +106,8 @@ std::string_view find_format_name(const std::filesystem::path& path, std::span<c
 Result<std::vector<FileReference>> list_references(const std::filesystem::path& path,
                                                    std::span<const std::filesystem::path> allow_outside) {
   return guarded(path, [&]() -> Result<std::vector<FileReference>> {
-    const auto file = MappedFile::open(path);
-    if (!file) return file.error();
-    if (Status scene = check_is_scene(path, file->bytes()); !scene) return scene.error();
+    TRY_LET(file, MappedFile::open(path));
+    TRY(check_is_scene(path, file->bytes()));
     const auto format = find_format(path, file->bytes());
     if (format == Format::kGltf) return list_gltf_references(path, file->bytes(), allow_outside);
     if (format == Format::kObj) return list_obj_references(path, file->bytes(), allow_outside);

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "base/file.h"
+#include "base/try.h"
 
 namespace meshlode::app {
 
@@ -23,8 +24,7 @@ Result<Hash128> find_program_id() {
   libraries[""] = "/proc/self/exe";
   Hasher hasher;
   for (const auto& [name, path] : libraries) {
-    const auto file = MappedFile::open(path);
-    if (!file) return file.error();
+    TRY_LET(file, MappedFile::open(path));
     const std::string line = name + "\n" + to_hex(hash128(file->bytes())) + "\n";
     hasher.update({reinterpret_cast<const std::uint8_t*>(line.data()), line.size()});
   }

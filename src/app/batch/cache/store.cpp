@@ -16,6 +16,7 @@
 #include <utility>
 
 #include "base/output_files.h"
+#include "base/try.h"
 
 namespace meshlode::app {
 
@@ -106,7 +107,7 @@ Result<Store> Store::open(const fs::path& folder, const StoreOptions& options) {
   }
   if (options.is_read_only) return Store(folder, options);
   const std::span tag(reinterpret_cast<const std::uint8_t*>(kTagText.data()), kTagText.size());
-  if (Status written = write_file_atomically(folder / kTagName, tag); !written) return written.error();
+  TRY(write_file_atomically(folder / kTagName, tag));
   return Store(folder, options);
 }
 

@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 #include <algorithm>
 
+#include "base/try.h"
 #include "scene/import/import.h"
 
 namespace meshlode::app {
@@ -55,18 +56,16 @@ const char* name_of(FileKind kind) {
 
 Result<Dependency> find_file(FileKind kind, const std::filesystem::path& path) {
   Dependency file{kind, path.filename().string(), path, std::nullopt, {}};
-  if (const Status seen = look_at(file); !seen) return seen.error();
+  TRY(look_at(file));
   return file;
 }
 
 Result<std::vector<Dependency>> find_dependencies(const std::filesystem::path& scene,
                                                   std::span<const std::filesystem::path> allow_outside) {
   std::vector<Dependency> files;
-  auto own = find_file(FileKind::kScene, scene);
-  if (!own) return own.error();
+  TRY_LET(own, find_file(FileKind::kScene, scene));
   files.push_back(std::move(*own));
-  const auto references = scene::list_references(scene, allow_outside);
-  if (!references) return references.error();
+  TRY_LET(references, scene::list_references(scene, allow_outside));
   for (const scene::FileReference& reference : *references) {
     files.push_back({kind_of(reference.kind), reference.uri, reference.path, std::nullopt, {}});
     static_cast<void>(look_at(files.back()));  // what is missing is the import's to judge

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "base/printable.h"
+#include "base/try.h"
 
 namespace meshlode::app {
 
@@ -32,9 +33,9 @@ Status check_depfile_path(const std::filesystem::path& path) {
 
 Result<std::string> depfile_text(const std::vector<DepfileRule>& rules) {
   for (const DepfileRule& rule : rules) {
-    if (const Status sound = check_depfile_path(rule.output); !sound) return sound.error();
+    TRY(check_depfile_path(rule.output));
     for (const std::filesystem::path& input : rule.inputs) {
-      if (const Status sound = check_depfile_path(input); !sound) return sound.error();
+      TRY(check_depfile_path(input));
     }
   }
   std::string text;

@@ -7,6 +7,8 @@
 #include <system_error>
 #include <utility>
 
+#include "base/try.h"
+
 namespace meshlode::app {
 
 namespace {
@@ -133,7 +135,7 @@ Result<GlobMatches> find_matches(const std::string& pattern) {
   if (parts.empty()) return out;
   if (parts.back() == "**") parts.emplace_back("*");
   std::set<fs::path> found;
-  if (const Status done = Walk(std::move(parts), found).visit(out.base, 0); !done) return done.error();
+  TRY(Walk(std::move(parts), found).visit(out.base, 0));
   out.files.assign(found.begin(), found.end());
   std::sort(out.files.begin(), out.files.end(),
             [](const fs::path& a, const fs::path& b) { return a.native() < b.native(); });

@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "app/batch/jobs/glob.h"
+#include "base/try.h"
 
 namespace meshlode::app {
 
@@ -49,12 +50,10 @@ struct Found {
 
 Result<Found> find_scenes(const std::string& input, bool is_folder) {
   if (is_folder) {
-    auto files = scan_folder(input);
-    if (!files) return files.error();
+    TRY_LET(files, scan_folder(input));
     return Found{input, std::move(*files)};
   }
-  auto matches = find_matches(input);
-  if (!matches) return matches.error();
+  TRY_LET(matches, find_matches(input));
   Found found{matches->base, {}};
   for (const fs::path& file : matches->files) {
     if (is_scene_file(file)) found.files.push_back(file);
@@ -100,8 +99,7 @@ Result<std::vector<Job>> plan_jobs(const std::vector<std::string>& inputs, const
     if (is_folder && output_folder.empty()) {
       return Error{ErrorCode::kUsage, input, "a folder as input needs -O FOLDER for the output"};
     }
-    auto found = find_scenes(input, is_folder);
-    if (!found) return found.error();
+    TRY_LET(found, find_scenes(input, is_folder));
     for (const fs::path& path : found->files) {
       const fs::path inner = found->base.empty() ? path : path.lexically_relative(found->base);
       jobs.push_back({path,
@@ -114,7 +112,7 @@ Result<std::vector<Job>> plan_jobs(const std::vector<std::string>& inputs, const
   if (!output.empty() && (jobs.size() != 1 || inputs.size() != 1)) {
     return Error{ErrorCode::kUsage, "-o", "one output for several inputs; give -O FOLDER"};
   }
-  if (Status apart = tell_apart(jobs); !apart) return apart.error();
+  TRY(tell_apart(jobs));
   return jobs;
 }
 

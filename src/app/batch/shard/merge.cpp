@@ -11,6 +11,7 @@
 
 #include "app/batch/batch.h"
 #include "base/file.h"
+#include "base/try.h"
 #include "base/version.h"
 
 namespace meshlode::app {
@@ -91,8 +92,8 @@ Status check_all_there(std::vector<ShardManifest>& shards) {
 
 Result<Manifest> merge_shards(std::vector<ShardManifest> shards) {
   if (shards.empty()) return Error{ErrorCode::kUsage, "", "no shards to merge"};
-  if (const Status each = check_each(shards); !each) return each.error();
-  if (const Status all = check_all_there(shards); !all) return all.error();
+  TRY(check_each(shards));
+  TRY(check_all_there(shards));
 
   std::vector<std::tuple<std::uint64_t, std::size_t, std::size_t>> places;  // position, shard, file of it
   for (std::size_t s = 0; s < shards.size(); ++s) {

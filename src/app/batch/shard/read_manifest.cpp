@@ -6,6 +6,7 @@
 
 #include "app/batch/batch.h"
 #include "base/file.h"
+#include "base/try.h"
 #include "scene/import/json.h"
 
 namespace meshlode::app {
@@ -170,8 +171,7 @@ ShardPlan read_shard(Members& in, const Json& json) {
 }  // namespace
 
 Result<Manifest> parse_manifest(std::string_view text) {
-  auto root = scene::parse_json(text);
-  if (!root) return root.error();
+  TRY_LET(root, scene::parse_json(text));
   if (!root->is_object()) return Error{ErrorCode::kInvalid, "", "no manifest: no object"};
   Members in;
   Manifest manifest;
@@ -208,8 +208,7 @@ Result<Manifest> parse_manifest(std::string_view text) {
 }
 
 Result<Manifest> read_manifest(const std::filesystem::path& path) {
-  const auto file = MappedFile::open(path);
-  if (!file) return file.error();
+  TRY_LET(file, MappedFile::open(path));
   auto manifest = parse_manifest({reinterpret_cast<const char*>(file->bytes().data()), file->bytes().size()});
   if (manifest) return manifest;
   Error error = manifest.error();

@@ -13,6 +13,7 @@
 #include "app/batch/cache/mesh_entries.h"
 #include "app/batch/work/warnings.h"
 #include "base/guarded.h"
+#include "base/try.h"
 #include "builder/builder.h"
 #include "builder/stage_options.h"
 #include "scene/detect/detect.h"
@@ -112,11 +113,9 @@ class Run {
   /// What files say of this job, and what was given.
   Status settle() {
     if (!options_.settings_of) return Ok{};
-    auto layers = options_.settings_of(result_.job);
-    if (!layers) return layers.error();
+    TRY_LET(layers, options_.settings_of(result_.job));
     layers_ = std::move(*layers);
-    auto settled = app::settle(layers_);
-    if (!settled) return settled.error();
+    TRY_LET(settled, app::settle(layers_));
     settled->options.max_memory = pipeline_.max_memory;
     settled->options.looks = pipeline_.looks;
     settled->options.hooks = pipeline_.hooks;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "base/try.h"
 #include "draw/gpu/vulkan/types.h"
 
 namespace meshlode::draw {
@@ -81,11 +82,10 @@ Status Device::upload(const Buffer& buffer, std::span<const std::uint8_t> bytes,
   for (std::uint64_t done = 0; done < bytes.size();) {
     const std::uint64_t count = std::min<std::uint64_t>(kStagingBytes, bytes.size() - done);
     std::memcpy(impl_->staging.mapped(), bytes.data() + done, count);
-    auto commands = Commands::begin(*this);
-    if (!commands) return commands.error();
+    TRY_LET(commands, Commands::begin(*this));
     commands->copy(impl_->staging, 0, buffer, offset + done, count);
     commands->barrier();
-    if (const auto ran = commands->run(); !ran) return ran.error();
+    TRY(commands->run());
     done += count;
   }
   return Ok{};
@@ -95,11 +95,10 @@ Status Device::download(const Buffer& buffer, std::span<std::uint8_t> bytes, std
   if (offset > buffer.bytes() || bytes.size() > buffer.bytes() - offset) return unsupported("read past a buffer's end");
   for (std::uint64_t done = 0; done < bytes.size();) {
     const std::uint64_t count = std::min<std::uint64_t>(kStagingBytes, bytes.size() - done);
-    auto commands = Commands::begin(*this);
-    if (!commands) return commands.error();
+    TRY_LET(commands, Commands::begin(*this));
     commands->copy(buffer, offset + done, impl_->staging, 0, count);
     commands->barrier();
-    if (const auto ran = commands->run(); !ran) return ran.error();
+    TRY(commands->run());
     std::memcpy(bytes.data() + done, impl_->staging.mapped(), count);
     done += count;
   }

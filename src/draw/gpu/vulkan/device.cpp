@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cstring>
 
+#include "base/try.h"
 #include "draw/gpu/vulkan/types.h"
 
 namespace meshlode::draw {
@@ -197,10 +198,8 @@ DeviceImpl::~DeviceImpl() {
   if (device != VK_NULL_HANDLE) f.vkDestroyDevice(device, nullptr);
 }
 Result<std::vector<DeviceInfo>> list_devices() {
-  const auto instance = make_instance(false);
-  if (!instance) return instance.error();
-  const auto candidates = find_devices(**instance);
-  if (!candidates) return candidates.error();
+  TRY_LET(instance, make_instance(false));
+  TRY_LET(candidates, find_devices(**instance));
   std::vector<DeviceInfo> out;
   for (const Candidate& candidate : *candidates) out.push_back(candidate.info);
   return out;
@@ -289,12 +288,9 @@ Status make_pool_and_layout(const Candidate& chosen, DeviceImpl& d) {
 }  // namespace
 
 Result<Device> Device::open(const DeviceOptions& options) {
-  auto instance = make_instance(options.validate);
-  if (!instance) return instance.error();
-  const auto candidates = find_devices(**instance);
-  if (!candidates) return candidates.error();
-  const auto found = choose(*candidates, options.device);
-  if (!found) return found.error();
+  TRY_LET(instance, make_instance(options.validate));
+  TRY_LET(candidates, find_devices(**instance));
+  TRY_LET(found, choose(*candidates, options.device));
   const Candidate& chosen = **found;
 
   Device out;
@@ -303,13 +299,12 @@ Result<Device> Device::open(const DeviceOptions& options) {
   d.instance = *instance;
   d.f = d.instance->f;
   d.info = chosen.info;
-  if (const Status s = create_device(chosen, d); !s) return s.error();
+  TRY(create_device(chosen, d));
   load_functions(d);
   d.f.vkGetDeviceQueue(d.device, chosen.queue_family, 0, &d.queue);
   d.f.vkGetPhysicalDeviceMemoryProperties(chosen.device, &d.memory);
-  if (const Status s = make_pool_and_layout(chosen, d); !s) return s.error();
-  auto staging = out.make_buffer(kStagingBytes, Memory::kHost);
-  if (!staging) return staging.error();
+  TRY(make_pool_and_layout(chosen, d));
+  TRY_LET(staging, out.make_buffer(kStagingBytes, Memory::kHost));
   d.staging = *staging;
   return out;
 }

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cstring>
 
+#include "base/try.h"
+
 namespace meshlode::scene {
 
 namespace {
@@ -63,18 +65,15 @@ Result<AccessorReader> AccessorReader::open(const GltfAsset& asset, std::size_t 
   AccessorReader reader = over({}, accessor.count, static_cast<std::uint32_t>(accessor.componentType),
                                component_count_of(accessor), accessor.normalized);
   if (accessor.bufferView >= 0 && accessor.count > 0) {
-    const auto bytes = asset.view_bytes(accessor.bufferView, path + "/bufferView");
-    if (!bytes) return bytes.error();
+    TRY_LET(bytes, asset.view_bytes(accessor.bufferView, path + "/bufferView"));
     reader.base_ = bytes->data() + accessor.byteOffset;
     const std::size_t stride = asset.model.bufferViews[accessor.bufferView].byteStride;
     if (stride != 0) reader.stride_ = stride;
   }
   const auto& sparse = accessor.sparse;
   if (!sparse.isSparse || sparse.count == 0) return reader;
-  const auto indices = asset.view_bytes(sparse.indices.bufferView, path + "/sparse");
-  if (!indices) return indices.error();
-  const auto values = asset.view_bytes(sparse.values.bufferView, path + "/sparse");
-  if (!values) return values.error();
+  TRY_LET(indices, asset.view_bytes(sparse.indices.bufferView, path + "/sparse"));
+  TRY_LET(values, asset.view_bytes(sparse.values.bufferView, path + "/sparse"));
   reader.sparse_indices_ = indices->data() + sparse.indices.byteOffset;
   reader.sparse_values_ = values->data() + sparse.values.byteOffset;
   reader.sparse_count_ = sparse.count;

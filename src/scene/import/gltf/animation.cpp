@@ -4,6 +4,7 @@
 #include <cstring>
 #include <map>
 
+#include "base/try.h"
 #include "scene/import/gltf/accessor.h"
 #include "scene/import/gltf/gltf.h"
 #include "scene/import/gltf/gltf_import.h"
@@ -25,8 +26,7 @@ class AccessorPacker {
     if (!budget_.take(accessor.count) || !budget_.take(sparse_count_of(accessor))) {
       return asset_.invalid(path + "/count", "more elements than the size of the file justifies");
     }
-    auto reader = AccessorReader::open(asset_, source);
-    if (!reader) return reader.error();
+    TRY_LET(reader, AccessorReader::open(asset_, source));
     const std::size_t size = std::size_t{component_size(accessor.componentType)} * component_count_of(accessor);
     bytes.resize((bytes.size() + 3) / 4 * 4);
     const std::size_t offset = bytes.size();
@@ -114,10 +114,8 @@ Status carry_animations(const GltfAsset& asset, DecodeBudget& budget, Json& docu
       }
       auto known = sampler_of.find(old);
       if (known == sampler_of.end()) {
-        const auto packed_input = packer.add(sampler.input);
-        if (!packed_input) return packed_input.error();
-        const auto packed_output = packer.add(sampler.output);
-        if (!packed_output) return packed_output.error();
+        TRY_LET(packed_input, packer.add(sampler.input));
+        TRY_LET(packed_output, packer.add(sampler.output));
         Json packed = sampler_texts[old];
         packed.set("input", Json::make_index(*packed_input));
         packed.set("output", Json::make_index(*packed_output));

@@ -5,6 +5,8 @@
 #include <limits>
 #include <string>
 
+#include "base/try.h"
+
 namespace meshlode::scene {
 
 namespace {
@@ -79,11 +81,11 @@ Result<TriangleCorners> read_corners(const CornerSource& source) {
   std::uint64_t begin = 0;
   for (std::uint64_t at = 0; may_split && at < source.count(); ++at) {
     if (vertex_at(source, at) != restart) continue;
-    if (auto status = add_part(source, begin, at, out); !status) return status.error();
+    TRY(add_part(source, begin, at, out));
     begin = at + 1;
     ++out.restarts;
   }
-  if (auto status = add_part(source, begin, source.count(), out); !status) return status.error();
+  TRY(add_part(source, begin, source.count(), out));
   return out;
 }
 

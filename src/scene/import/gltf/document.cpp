@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/printable.h"
+#include "base/try.h"
 #include "scene/import/gltf/check_base.h"
 #include "scene/import/gltf/gltf.h"
 #include "scene/import/gltf/gltf_import.h"
@@ -102,8 +103,7 @@ Status carry_images(const GltfAsset& asset, GltfFiles& files, const ImportOption
   for (const auto& view : asset.decoded_views) view_limit += view.size();
   for (const Json& source : asset.root.items("images")) {
     const std::string path = "/images/" + std::to_string(out.size());
-    const auto found = find_image_bytes(asset, files, options, source, path);
-    if (!found) return found.error();
+    TRY_LET(found, find_image_bytes(asset, files, options, source, path));
     Json image = source;
     image.erase("uri");
     image.erase("bufferView");

@@ -23,6 +23,7 @@
 #include <draco/mesh/mesh.h>
 
 #include "base/guarded.h"
+#include "base/try.h"
 #include "scene/import/gltf/gltf.h"
 
 namespace meshlode::scene {
@@ -358,10 +359,9 @@ Status run_draco(Method method, std::span<const std::uint8_t> bytes, const Draco
 }  // namespace
 
 Result<DracoMesh> decode_draco(std::span<const std::uint8_t> bytes, const DracoExpectation& expected) {
-  const auto method = check_head(bytes, expected);
-  if (!method) return method.error();
+  TRY_LET(method, check_head(bytes, expected));
   draco::Mesh mesh;
-  if (const Status decoded = run_draco(*method, bytes, expected, mesh); !decoded) return decoded.error();
+  TRY(run_draco(*method, bytes, expected, mesh));
   if (mesh.num_points() != expected.point_count ||
       (expected.is_face_count_exact && mesh.num_faces() != expected.max_face_count)) {
     return invalid("it decodes to other counts than the accessors say");
@@ -378,8 +378,7 @@ Result<DracoMesh> decode_draco(std::span<const std::uint8_t> bytes, const DracoE
   for (const std::uint32_t id : expected.attribute_ids) {
     const draco::PointAttribute* attribute = mesh.GetAttributeByUniqueId(id);
     if (attribute == nullptr) return invalid("there is no attribute " + std::to_string(id));
-    auto copied = copy_attribute(*attribute, out.point_count);
-    if (!copied) return copied.error();
+    TRY_LET(copied, copy_attribute(*attribute, out.point_count));
     out.attributes.emplace(id, std::move(*copied));
   }
   return out;

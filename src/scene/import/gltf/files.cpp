@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/try.h"
 #include "scene/import/gltf/gltf.h"
 #include "scene/import/gltf/uri.h"
 
@@ -6,13 +7,11 @@ namespace meshlode::scene {
 
 Result<std::span<const std::uint8_t>> GltfFiles::open(const std::string& uri) {
   if (is_data_uri(uri)) {
-    auto data = decode_data_uri(uri);
-    if (!data) return data.error();
+    TRY_LET(data, decode_data_uri(uri));
     decoded_.push_back(std::move(data->bytes));
     return std::span<const std::uint8_t>(decoded_.back());
   }
-  auto path = resolve_uri(folder_, uri, allow_outside_);
-  if (!path) return path.error();
+  TRY_LET(path, resolve_uri(folder_, uri, allow_outside_));
   const auto known = by_path_.find(path->string());
   if (known != by_path_.end()) return mapped_[known->second].bytes();
   auto file = MappedFile::open(*path);

@@ -7,6 +7,7 @@
 #include <set>
 #include <string_view>
 
+#include "base/try.h"
 #include "scene/import/gltf/check_base.h"
 #include "scene/import/gltf/choose_scene.h"
 #include "scene/import/gltf/gltf.h"
@@ -177,8 +178,7 @@ Status read_meshes(const GltfAsset& asset, const ImportOptions& options, DecodeB
         for (const JsonMember& member : *object->object()) extensions.insert(pointer_part(member.key));
       }
       VertexWeights of_primitive;
-      auto primitive = read_primitive(context, m, p, json, mesh.drops, is_skinned[m] ? &of_primitive : nullptr);
-      if (!primitive) return primitive.error();
+      TRY_LET(primitive, read_primitive(context, m, p, json, mesh.drops, is_skinned[m] ? &of_primitive : nullptr));
       if (!*primitive) continue;
       weights[m].push_back(std::move(of_primitive));
       needs_default_material = needs_default_material || !(*primitive)->material.is_valid();
@@ -255,26 +255,24 @@ Result<Scene> import_gltf(const std::filesystem::path& path, std::span<const std
                           const ImportOptions& options) {
   GltfAsset asset;
   asset.file = path.string();
-  auto container = open_container(asset.file, bytes);
-  if (!container) return container.error();
-  auto root = read_tree(asset.file, container->text);
-  if (!root) return root.error();
+  TRY_LET(container, open_container(asset.file, bytes));
+  TRY_LET(root, read_tree(asset.file, container->text));
   asset.root = std::move(*root);
-  if (auto status = check_gltf(asset.root, asset.file); !status) return status.error();
+  TRY(check_gltf(asset.root, asset.file));
 
   GltfFiles files(path.parent_path(), options.files_read, options.allow_outside);
   files.hash(bytes);
-  if (auto status = load_buffers(asset, files, *container); !status) return status.error();
+  TRY(load_buffers(asset, files, *container));
   auto model = read_gltf_model(asset.root);
   if (!model) return Error{model.error().code, asset.file, model.error().detail};
   asset.model = std::move(*model);
-  if (auto status = choose_scene(asset, options.scene); !status) return status.error();
+  TRY(choose_scene(asset, options.scene));
 
   const std::uint64_t file_bytes = bytes.size() + files.total_bytes();
   const std::uint64_t stream_bytes = std::min(count_meshopt_bytes(asset.root), file_bytes);
   const std::uint64_t max_view_bytes =
       std::max(16 * stream_bytes, std::min(kMeshoptMaxExpansion * stream_bytes, options.max_decoded));
-  if (auto status = decode_meshopt_views(asset, max_view_bytes); !status) return status.error();
+  TRY(decode_meshopt_views(asset, max_view_bytes));
 
   Scene scene;
   // Streams may overlap, and one of Draco's may come out of a compressed view: no more of them than the files have.
@@ -283,16 +281,16 @@ Result<Scene> import_gltf(const std::filesystem::path& path, std::span<const std
   scene.materials = read_materials(asset, scene.left_out);
   keep_uv_sets_of_variants(asset, scene.materials);
   std::vector<std::vector<VertexWeights>> weights;
-  if (auto status = read_meshes(asset, options, budget, scene, weights); !status) return status.error();
+  TRY(read_meshes(asset, options, budget, scene, weights));
   if (auto status = expand_instancing(asset, budget, file_bytes, options.max_decoded, scene.left_out); !status) {
     return status.error();
   }
-  if (auto status = settle_skins(asset, weights, budget, scene); !status) return status.error();
+  TRY(settle_skins(asset, weights, budget, scene));
   weights.clear();
   scene.instances = read_instances(asset, options.scene, scene.left_out);
   scene.choice = options.scene;
   merge_equal_meshes(asset, scene);
-  if (auto status = carry_document(asset, files, options, budget, scene); !status) return status.error();
+  TRY(carry_document(asset, files, options, budget, scene));
   scene.source_hash = files.hash_hex();
   return scene;
 }
@@ -302,10 +300,8 @@ Result<std::vector<FileReference>> list_gltf_references(const std::filesystem::p
                                                         std::span<const std::filesystem::path> allow_outside) {
   using Kind = FileReference::Kind;
   const std::string file = path.string();
-  const auto container = open_container(file, bytes);
-  if (!container) return container.error();
-  const auto root = read_tree(file, container->text);
-  if (!root) return root.error();
+  TRY_LET(container, open_container(file, bytes));
+  TRY_LET(root, read_tree(file, container->text));
   std::vector<FileReference> references;
   std::set<std::filesystem::path> known;
   for (const Kind kind : {Kind::kBuffer, Kind::kImage}) {

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <utility>
 
+#include "base/try.h"
 #include "scene/import/gltf/accessor.h"
 #include "scene/import/gltf/check_base.h"
 
@@ -122,8 +123,7 @@ class InstanceExpander {
         continue;
       }
       if (!budget_.take(sparse_count_of(accessor))) return no_budget(here);
-      auto reader = AccessorReader::open(asset_, index);
-      if (!reader) return reader.error();
+      TRY_LET(reader, AccessorReader::open(asset_, index));
       if (!has_type(member.key, *reader))
         return asset_.invalid(here, "an accessor type that this attribute cannot have");
       *slot = *reader;
@@ -170,8 +170,7 @@ class InstanceExpander {
       forget_extension(n);
       return Ok{};
     }
-    const auto attributes = open(attribute_list, path);
-    if (!attributes) return attributes.error();
+    TRY_LET(attributes, open(attribute_list, path));
     const std::string stem = stem_of(n);
     std::vector<int> children;
     for (std::uint64_t i = 0; i < attributes->count; ++i) {

@@ -8,6 +8,8 @@
 
 #include <meshoptimizer.h>
 
+#include "base/try.h"
+
 namespace meshlode::scene {
 
 namespace {
@@ -71,7 +73,7 @@ bool is_sound(const MeshoptLayout& layout) {
 }
 
 Result<std::vector<std::uint8_t>> decode_meshopt(std::span<const std::uint8_t> stream, const MeshoptLayout& layout) {
-  if (const Status head = check_head(stream, layout); !head) return head.error();
+  TRY(check_head(stream, layout));
   const Error broken = invalid("a stream that is broken or not of " + std::to_string(layout.count) + " elements of " +
                                std::to_string(layout.stride) + " bytes");
   std::vector<std::uint8_t> out;

@@ -10,6 +10,7 @@
 #include <numeric>
 
 #include "base/byte_size.h"
+#include "base/try.h"
 #include "scene/import/gltf/accessor.h"
 #include "scene/import/gltf/corners.h"
 #include "scene/import/gltf/draco_decode.h"
@@ -94,13 +95,11 @@ Result<AccessorReader> PrimitiveReader::open_accessor(int index) {
 
 Status PrimitiveReader::open_accessors() {
   for (const auto& [name, index] : source_.attributes) {
-    auto reader = open_accessor(index);
-    if (!reader) return reader.error();
+    TRY_LET(reader, open_accessor(index));
     in_.attributes.emplace(name, *reader);
   }
   if (source_.indices >= 0) {
-    auto reader = open_accessor(source_.indices);
-    if (!reader) return reader.error();
+    TRY_LET(reader, open_accessor(source_.indices));
     in_.indices = *reader;
   }
   in_.vertex_count = in_.attributes.at("POSITION").count();
@@ -130,8 +129,7 @@ Status PrimitiveReader::open_draco(const Json& draco) {
   if (!ids.contains("POSITION")) return asset_.invalid(path + "/attributes", "POSITION is missing");
   expected.max_bytes = context_.budget->left_bytes();
   if (!context_.budget->take(expected.point_count + 3 * expected.max_face_count)) return no_budget(path);
-  const auto bytes = asset_.view_bytes(draco.find("bufferView")->index().value_or(0), path + "/bufferView");
-  if (!bytes) return bytes.error();
+  TRY_LET(bytes, asset_.view_bytes(draco.find("bufferView")->index().value_or(0), path + "/bufferView"));
   auto mesh = decode_draco(*bytes, expected);
   if (!mesh) return asset_.error(mesh.error().code, path, mesh.error().detail);
   in_.draco = std::move(*mesh);
@@ -140,8 +138,7 @@ Status PrimitiveReader::open_draco(const Json& draco) {
     const auto id = ids.find(name);
     if (id == ids.end()) {
       // An attribute beside the compressed ones is an ordinary accessor.
-      auto reader = open_accessor(index);
-      if (!reader) return reader.error();
+      TRY_LET(reader, open_accessor(index));
       in_.attributes.emplace(name, *reader);
       continue;
     }
@@ -392,16 +389,15 @@ Result<std::optional<Primitive>> PrimitiveReader::run(VertexWeights* weights) {
     return std::optional<Primitive>{};
   }
   const Json* draco = draco_json();
-  if (auto status = draco != nullptr ? open_draco(*draco) : open_accessors(); !status) return status.error();
-  if (auto status = check_types(); !status) return status.error();
-  auto corners = read_triangles();
-  if (!corners) return corners.error();
-  if (auto status = read_positions(*corners); !status) return status.error();
+  TRY(draco != nullptr ? open_draco(*draco) : open_accessors());
+  TRY(check_types());
+  TRY_LET(corners, read_triangles());
+  TRY(read_positions(*corners));
   out_.indices = std::move(*corners);
   if (source_.material >= 0) out_.material = MaterialId(static_cast<std::size_t>(source_.material));
-  if (auto status = read_attributes(); !status) return status.error();
+  TRY(read_attributes());
   if (weights != nullptr) {
-    if (auto status = read_weights(*weights); !status) return status.error();
+    TRY(read_weights(*weights));
   } else if (in_.attributes.contains("JOINTS_0")) {
     leave_out("JOINTS_0", "no node draws the mesh with a skin; joints and weights are left out");
   }

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "base/try.h"
 #include "scene/import/gltf/accessor.h"
 #include "scene/import/gltf/gltf_import.h"
 #include "scene/import/gltf/skin_mesh.h"
@@ -118,8 +119,7 @@ class SkinSettler {
             path, std::to_string(accessor.count) + " matrices for " + std::to_string(skin.joints.size()) + " joints");
       }
       if (!budget_.take(sparse_count_of(accessor))) return no_budget(s);
-      auto reader = AccessorReader::open(asset_, static_cast<std::size_t>(skin.inverseBindMatrices));
-      if (!reader) return reader.error();
+      TRY_LET(reader, AccessorReader::open(asset_, static_cast<std::size_t>(skin.inverseBindMatrices)));
       inverse = *reader;
     }
     for (std::size_t j = 0; j < skin.joints.size(); ++j) {

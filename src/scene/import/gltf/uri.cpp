@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "base/printable.h"
+#include "base/try.h"
 #include "base/utf8.h"
 
 namespace meshlode::scene {
@@ -152,22 +153,19 @@ Result<DataUri> decode_data_uri(std::string_view uri) {
   DataUri out;
   out.mime_type = std::string(header.substr(0, header.find(';')));
   if (!is_base64(header)) {
-    auto bytes = percent_decode_bytes(body);
-    if (!bytes) return bytes.error();
+    TRY_LET(bytes, percent_decode_bytes(body));
     out.bytes = std::move(*bytes);
     return out;
   }
   // "=" and "+" may be escaped, and whoever wraps lines puts breaks between the characters.
   std::string plain;
   if (body.find_first_of("% \t\r\n") != std::string_view::npos) {
-    const auto unescaped = percent_decode_bytes(body);
-    if (!unescaped) return unescaped.error();
+    TRY_LET(unescaped, percent_decode_bytes(body));
     std::copy_if(unescaped->begin(), unescaped->end(), std::back_inserter(plain),
                  [](std::uint8_t c) { return c != ' ' && c != '\t' && c != '\r' && c != '\n'; });
     body = plain;
   }
-  auto bytes = base64_decode(body);
-  if (!bytes) return bytes.error();
+  TRY_LET(bytes, base64_decode(body));
   out.bytes = std::move(*bytes);
   return out;
 }

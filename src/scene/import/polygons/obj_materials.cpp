@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/file.h"
+#include "base/try.h"
 #include "base/utf8.h"
 #include "scene/import/gltf/uri.h"
 #include "scene/import/image_mime.h"
@@ -103,8 +104,7 @@ class ObjMaterials {
   }
 
   Result<MappedFile> open(const std::string& name, std::filesystem::path& path) {
-    auto resolved = resolve_named(folder_, name, options_.allow_outside);
-    if (!resolved) return resolved.error();
+    TRY_LET(resolved, resolve_named(folder_, name, options_.allow_outside));
     path = *resolved;
     auto file = MappedFile::open(path);
     if (!file) return file;
@@ -121,8 +121,7 @@ class ObjMaterials {
 
   Status open_and_read(const std::string& name) {
     std::filesystem::path path;
-    const auto file = open(name, path);
-    if (!file) return file.error();
+    TRY_LET(file, open(name, path));
     if (!read_.insert(path).second) return Ok{};
     hasher_.update(file->bytes());
     MtlFile library = read_mtl(file->bytes());

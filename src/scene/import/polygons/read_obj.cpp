@@ -11,6 +11,7 @@
 #include <optional>
 #include <set>
 
+#include "base/try.h"
 #include "scene/import/polygons/obj_face.h"
 #include "scene/import/polygons/obj_objects.h"
 #include "scene/import/polygons/polygon_soup.h"
@@ -54,7 +55,7 @@ class ObjReader {
       ++line_;
       std::string_view line = take_joined_line(text_, joined, line_);
       const std::string_view keyword = take_word(line);
-      if (const Status status = read_statement(keyword, line); !status) return status.error();
+      TRY(read_statement(keyword, line));
     }
     return finish();
   }

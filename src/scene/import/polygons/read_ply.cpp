@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "base/try.h"
 #include "scene/import/polygons/ply_body.h"
 #include "scene/import/polygons/ply_colors.h"
 #include "scene/import/polygons/ply_columns.h"
@@ -38,11 +39,10 @@ class PlyReader {
 
   Result<PolygonFile> run() {
     for (const PlyElement& element : header_.elements) {
-      const Status status = element.name == "vertex"      ? read_vertices(element)
-                            : element.name == "face"      ? read_faces(element)
-                            : element.name == "tristrips" ? read_strips(element)
-                                                          : skip_element(element);
-      if (!status) return status.error();
+      TRY_LET(status, element.name == "vertex"      ? read_vertices(element)
+                      : element.name == "face"      ? read_faces(element)
+                      : element.name == "tristrips" ? read_strips(element)
+                                                    : skip_element(element));
     }
     return finish();
   }
@@ -395,8 +395,7 @@ PolygonFile PlyReader::finish() {
 
 Result<PolygonFile> read_ply(std::span<const std::uint8_t> bytes, const ImportOptions& options) {
   std::string_view text = text_of(bytes);
-  const auto header = take_ply_header(text);
-  if (!header) return header.error();
+  TRY_LET(header, take_ply_header(text));
   return PlyReader(*header, text, options).run();
 }
 

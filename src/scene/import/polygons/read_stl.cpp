@@ -6,6 +6,7 @@
 #include <cstring>
 #include <map>
 
+#include "base/try.h"
 #include "scene/import/polygons/polygon_soup.h"
 #include "scene/import/polygons/stl_colors.h"
 #include "scene/import/polygons/text_scan.h"
@@ -224,8 +225,7 @@ std::uint32_t StlReader::weld(const Point& point) {
 
 Result<PolygonFile> read_stl(std::span<const std::uint8_t> bytes, const ImportOptions& options) {
   StlReader reader(options);
-  const Status status = is_binary(bytes) ? reader.read_binary(bytes) : reader.read_text(text_of(bytes));
-  if (!status) return status.error();
+  TRY_LET(status, is_binary(bytes) ? reader.read_binary(bytes) : reader.read_text(text_of(bytes)));
   return reader.finish();
 }
 
