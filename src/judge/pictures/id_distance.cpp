@@ -11,6 +11,11 @@ namespace meshlode::judge {
 
 namespace {
 
+/// A pixel is one sample of what it shows: in both pictures an edge may lie up to half a pixel's diagonal from the
+/// middles of the pixels beside it. Twice that is 1.42; the rest is for where vertices are rounded.
+constexpr double kSamplingPx = 1.5;
+constexpr double kDepthSteps = 4294967296.0;
+
 /// The pixels of each surface as runs in rows, so that the nearest is found row by row, exactly.
 class RunsOfIds {
  public:
@@ -67,6 +72,10 @@ class RunsOfIds {
   std::vector<std::vector<Run>> rows_;
 };
 
+bool is_behind_backs(const IdPicture& picture, std::size_t pixel) {
+  return !picture.is_behind_backs.empty() && picture.is_behind_backs[pixel] != 0;
+}
+
 /// From a pixel's surface in `from` to the same in another picture; 0 where it is within `allowed`.
 double distance_beyond(const IdPicture& from, const RunsOfIds& to, std::uint32_t x, std::uint32_t y, double allowed) {
   const std::uint64_t id = from.id[std::size_t{y} * from.width + x];
@@ -77,7 +86,26 @@ double distance_beyond(const IdPicture& from, const RunsOfIds& to, std::uint32_t
 
 }  // namespace
 
-IdDistance measure_ids(const IdPicture& source, const IdPicture& cut) {
+double AllowedPixels::at(const IdPicture& picture, std::size_t pixel) const {
+  if (picture.id[pixel] == IdPicture::kBackground) return 0.0;
+  const draw::Projection& p = projection_;
+  // Near over distance; orthographic: 1 at the near distance, 0 at the far one.
+  const double share = picture.depth[pixel] / kDepthSteps;
+  const double px_per_unit = p.is_orthographic ? p.pixels_per_unit : p.pixels_per_unit * share / p.near_distance;
+  double moved = std::max(pixel_error_, static_cast<double>(picture.level0[pixel]) * px_per_unit);
+  const double to_near =
+      (1.0 - share) * p.pixels_per_unit * (p.is_orthographic ? p.far_distance - p.near_distance : 1.0);
+  if (!(moved < to_near)) return HUGE_VAL;
+  if (!p.is_orthographic) {
+    // Displacement in pixels is an angle times pixels_per_unit; outwards from the middle the picture stretches angles.
+    const double x = static_cast<double>(pixel % picture.width) + 0.5 - 0.5 * picture.width;
+    const double y = static_cast<double>(pixel / picture.width) + 0.5 - 0.5 * picture.height;
+    moved *= 1.0 + (x * x + y * y) / (p.pixels_per_unit * p.pixels_per_unit);
+  }
+  return moved + kSamplingPx;
+}
+
+IdDistance measure_ids(const IdPicture& source, const IdPicture& cut, const AllowedPixels& allowed_pixels) {
   const RunsOfIds source_runs(source), cut_runs(cut);
   std::vector<IdDistance> rows(source.height);
   parallel_for_each_index(rows.size(), 4, [&](std::size_t row) {
@@ -87,11 +115,12 @@ IdDistance measure_ids(const IdPicture& source, const IdPicture& cut) {
       if (source.id[at] == IdPicture::kBackground && cut.id[at] == IdPicture::kBackground) continue;
       ++rows[row].pixels;
       if (source.id[at] == cut.id[at]) continue;
-      const double allowed = std::max(source.allowed_px[at], cut.allowed_px[at]);
+      if (is_behind_backs(source, at) || is_behind_backs(cut, at)) continue;
+      const double allowed = std::max(allowed_pixels.at(source, at), allowed_pixels.at(cut, at));
       const double to_edge = std::min({x + 0.5, source.width - x - 0.5, y + 0.5, source.height - y - 0.5});
       if (to_edge <= allowed) continue;
-      const double beyond = std::max(distance_beyond(source, cut_runs, x, y, allowed),
-                                     distance_beyond(cut, source_runs, x, y, allowed));
+      const double beyond =
+          std::max(distance_beyond(source, cut_runs, x, y, allowed), distance_beyond(cut, source_runs, x, y, allowed));
       if (beyond == 0.0) continue;
       ++rows[row].astray;
       rows[row].farthest_px = std::max(rows[row].farthest_px, beyond);

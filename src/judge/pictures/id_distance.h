@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "draw/raster/projection.h"
 #include "judge/pictures/id_picture.h"
 
 namespace meshlode::judge {
@@ -20,9 +21,23 @@ struct IdDistance {
   }
 };
 
-/// The background is no surface: what vanishes before it, or comes, has an id of its own to be found by. A pixel that
-/// is as near to the picture's edge as it may have moved is not astray: its surface may lie beyond. \pre pictures of
-/// one size
-[[nodiscard]] IdDistance measure_ids(const IdPicture& source, const IdPicture& cut);
+/// What a surface may have moved by on screen, of pictures from one camera.
+class AllowedPixels {
+ public:
+  /// Of cuts of `pixel_error`.
+  AllowedPixels(const draw::Projection& projection, double pixel_error)
+      : projection_(projection), pixel_error_(pixel_error) {}
+  /// Infinite where it may have moved through the near plane, which opens what it cuts.
+  [[nodiscard]] double at(const IdPicture& picture, std::size_t pixel) const;
+
+ private:
+  const draw::Projection& projection_;
+  double pixel_error_;
+};
+
+/// The background is no surface: what vanishes before it, or comes, has an id of its own to be found by. Not judged are
+/// pixels as near to the picture's edge as they may have moved, as their surface may lie beyond, and those behind
+/// backs. \pre pictures of one size
+[[nodiscard]] IdDistance measure_ids(const IdPicture& source, const IdPicture& cut, const AllowedPixels& allowed);
 
 }  // namespace meshlode::judge

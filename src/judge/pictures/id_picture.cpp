@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "judge/pictures/id_picture.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include "base/parallel.h"
+#include "base/try.h"
 #include "draw/raster/cut_pages.h"
 #include "judge/metrics/coverage.h"
 
@@ -12,59 +10,34 @@ namespace meshlode::judge {
 
 namespace {
 
-/// A pixel is one sample of what it shows, and the pixels of an edge lie up to half a diagonal to either side of it in
-/// both pictures: 1.42, and something for the grid.
-constexpr double kSamplingPx = 1.5;
-constexpr double kDepthSteps = 4294967296.0;
+IdPicture blank(const draw::VisibilityBuffer& drawn) {
+  IdPicture out;
+  out.width = drawn.width;
+  out.height = drawn.height;
+  out.id.assign(drawn.pixel_count(), IdPicture::kBackground);
+  out.depth = drawn.depth;
+  out.level0.assign(drawn.pixel_count(), 0.0F);
+  return out;
+}
 
 }  // namespace
 
-IdPainter::IdPainter(const run::Asset& asset, const draw::Projection& projection, double pixel_error)
-    : asset_(asset), projection_(projection), pixel_error_(pixel_error) {
+IdPainter::IdPainter(const run::Asset& asset) : asset_(asset) {
   for (std::size_t m = 0; m < asset.meshes().size(); ++m) {
     is_one_surface_.push_back(has_aggregates(asset, MeshId(m)) ? 1 : 0);
   }
 }
 
-IdPicture IdPainter::blank(const draw::VisibilityBuffer& drawn) const {
-  IdPicture out;
-  out.width = drawn.width;
-  out.height = drawn.height;
-  out.id.assign(drawn.pixel_count(), IdPicture::kBackground);
-  out.allowed_px.assign(drawn.pixel_count(), 0.0F);
-  return out;
-}
-
-void IdPainter::paint(std::size_t pixel, std::uint32_t depth, std::uint32_t instance, std::uint32_t material,
-                      IdPicture& out) const {
+void IdPainter::paint(std::size_t pixel, std::uint32_t instance, std::uint32_t material, IdPicture& out) const {
   const format::InstanceRecord& record = asset_.instances()[instance];
   const std::uint32_t shown = is_one_surface_[record.mesh] != 0 ? format::kNone : material;
   out.id[pixel] = std::uint64_t{record.mesh} << 32 | shown;
-
-  const draw::Projection& p = projection_;
-  const double share = depth / kDepthSteps;  // near over distance; orthographic: 1 at the near distance, 0 far away
-  const double px_per_unit = p.is_orthographic ? p.pixels_per_unit : p.pixels_per_unit * share / p.near_distance;
-  const double level0 = double{asset_.meshes()[record.mesh].level0_deviation} * record.scale * px_per_unit;
-  double moved = std::max(pixel_error_, level0);
-  const double to_near = p.is_orthographic ? (1.0 - share) * (p.far_distance - p.near_distance) * p.pixels_per_unit
-                                           : (1.0 - share) * p.pixels_per_unit;
-  if (!(moved < to_near)) {
-    out.allowed_px[pixel] = HUGE_VALF;
-    return;
-  }
-  if (!p.is_orthographic) {
-    // Displacement in pixels is an angle times pixels_per_unit; outwards from the middle the picture stretches angles.
-    const double x = static_cast<double>(pixel % out.width) + 0.5 - 0.5 * out.width;
-    const double y = static_cast<double>(pixel / out.width) + 0.5 - 0.5 * out.height;
-    moved *= 1.0 + (x * x + y * y) / (p.pixels_per_unit * p.pixels_per_unit);
-  }
-  out.allowed_px[pixel] = static_cast<float>(moved + kSamplingPx);
+  out.level0[pixel] = asset_.meshes()[record.mesh].level0_deviation * static_cast<float>(record.scale);
 }
 
 Result<IdPicture> IdPainter::of_cut(std::span<const run::ClusterInstance> cut,
                                     const draw::VisibilityBuffer& drawn) const {
-  const auto pages = draw::CutPages::load(asset_, cut);
-  if (!pages) return pages.error();
+  TRY_LET(pages, draw::CutPages::load(asset_, cut));
   std::vector<std::vector<std::uint32_t>> pixels_of(cut.size());
   for (std::size_t i = 0; i < drawn.pixel_count(); ++i) {
     if (drawn.item[i] < cut.size()) pixels_of[drawn.item[i]].push_back(static_cast<std::uint32_t>(i));
@@ -75,7 +48,7 @@ Result<IdPicture> IdPainter::of_cut(std::span<const run::ClusterInstance> cut,
     run::DecodedCluster cluster;
     pages->decode(asset_, cut[item].cluster, cluster);
     for (const std::uint32_t pixel : pixels_of[item]) {
-      paint(pixel, drawn.depth[pixel], cut[item].instance.value, cluster.triangle_material[drawn.triangle[pixel]], out);
+      paint(pixel, cut[item].instance.value, cluster.triangle_material[drawn.triangle[pixel]], out);
     }
   });
   return out;
@@ -86,8 +59,14 @@ IdPicture IdPainter::of_source(std::span<const SourceSurface> source, const draw
   parallel_for_each_index(drawn.pixel_count(), kLoopGrain, [&](std::size_t i) {
     if (drawn.item[i] == draw::VisibilityBuffer::kNothing) return;
     const std::vector<std::uint32_t>& material = source[asset_.instances()[drawn.item[i]].mesh].material;
-    paint(i, drawn.depth[i], drawn.item[i], material.empty() ? 0 : material[drawn.triangle[i]], out);
+    paint(i, drawn.item[i], material.empty() ? 0 : material[drawn.triangle[i]], out);
   });
+  return out;
+}
+
+std::vector<std::uint8_t> find_backs(const draw::VisibilityBuffer& drawn, const draw::VisibilityBuffer& both_sides) {
+  std::vector<std::uint8_t> out(drawn.pixel_count());
+  for (std::size_t i = 0; i < out.size(); ++i) out[i] = both_sides.depth[i] > drawn.depth[i] ? 1 : 0;
   return out;
 }
 

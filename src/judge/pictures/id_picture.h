@@ -9,7 +9,6 @@
 
 #include <meshlode/result.h>
 
-#include "draw/raster/projection.h"
 #include "draw/raster/raster.h"
 #include "judge/pictures/source_picture.h"
 #include "run/read/asset.h"
@@ -17,22 +16,24 @@
 
 namespace meshlode::judge {
 
-/// Top row first.
+/// A value a pixel, top row first.
 struct IdPicture {
   static constexpr std::uint64_t kBackground = ~std::uint64_t{0};
   std::uint32_t width = 0, height = 0;
-  std::vector<std::uint64_t> id;  ///< of the mesh and the material of what is seen, or kBackground
-  /// How far on screen what is seen may have moved. Infinite where it may have moved through the near plane, which
-  /// opens what it cuts.
-  std::vector<float> allowed_px;
+  std::vector<std::uint64_t> id;     ///< of the mesh and the material of what is seen, or kBackground
+  std::vector<std::uint32_t> depth;  ///< as in VisibilityBuffer
+  std::vector<float> level0;         ///< level 0's own deviation of what is seen, world units
+  /// Not 0 where a triangle's back, which is not drawn, is nearer than what is seen: an open surface from behind. How
+  /// far that shows through hangs on how triangles face, which no error bounds. Empty: nowhere.
+  std::vector<std::uint8_t> is_behind_backs;
 };
 
 /// Instances of a mesh are one surface. So are all materials of a mesh that has aggregates: what stands for its leaves
 /// has materials of its own.
 class IdPainter {
  public:
-  /// Cuts are those of `pixel_error`. \pre `asset` outlives this
-  IdPainter(const run::Asset& asset, const draw::Projection& projection, double pixel_error);
+  /// \pre `asset` outlives this
+  explicit IdPainter(const run::Asset& asset);
 
   /// `drawn`: the picture of `cut`, by the CPU or a GPU. Errors: as CutPages::load().
   [[nodiscard]] Result<IdPicture> of_cut(std::span<const run::ClusterInstance> cut,
@@ -41,14 +42,14 @@ class IdPainter {
   [[nodiscard]] IdPicture of_source(std::span<const SourceSurface> source, const draw::VisibilityBuffer& drawn) const;
 
  private:
-  [[nodiscard]] IdPicture blank(const draw::VisibilityBuffer& drawn) const;
-  void paint(std::size_t pixel, std::uint32_t depth, std::uint32_t instance, std::uint32_t material,
-             IdPicture& out) const;
+  void paint(std::size_t pixel, std::uint32_t instance, std::uint32_t material, IdPicture& out) const;
 
   const run::Asset& asset_;
-  const draw::Projection& projection_;
-  double pixel_error_;
   std::vector<std::uint8_t> is_one_surface_;  ///< of each mesh
 };
+
+/// `both_sides`: the same picture as `drawn` without culling.
+[[nodiscard]] std::vector<std::uint8_t> find_backs(const draw::VisibilityBuffer& drawn,
+                                                   const draw::VisibilityBuffer& both_sides);
 
 }  // namespace meshlode::judge
