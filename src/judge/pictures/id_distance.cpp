@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "base/parallel.h"
 
@@ -19,7 +20,7 @@ constexpr double kDepthSteps = 4294967296.0;
 /// The pixels of each surface as runs in rows, so that the nearest is found row by row, exactly.
 class RunsOfIds {
  public:
-  explicit RunsOfIds(const IdPicture& picture) : width_(picture.width), rows_(picture.height) {
+  explicit RunsOfIds(const IdPicture& picture) : width_(picture.width), height_(picture.height), rows_(picture.height) {
     parallel_for_each_index(rows_.size(), 16, [&](std::size_t y) {
       std::vector<Run>& row = rows_[y];
       const std::uint64_t* id = &picture.id[y * width_];
@@ -32,19 +33,30 @@ class RunsOfIds {
       }
       std::sort(row.begin(), row.end(), comes_before);
     });
+    for (std::uint32_t y = 0; y < picture.height; ++y) {
+      for (std::size_t i = 0; i < rows_[y].size(); ++i) {
+        if (i == 0 || rows_[y][i].id != rows_[y][i - 1].id) rows_of_.emplace_back(rows_[y][i].id, y);
+      }
+    }
+    std::sort(rows_of_.begin(), rows_of_.end());
   }
 
   /// From the middle of one pixel to the middle of another, pixels; infinite where there is none.
   [[nodiscard]] double distance(std::uint64_t id, std::uint32_t x, std::uint32_t y) const {
     double best2 = std::numeric_limits<double>::infinity();
-    for (std::size_t down = 0; down < rows_.size(); ++down) {
-      const auto dy = static_cast<double>(down);
-      if (dy * dy >= best2) break;
-      for (const std::size_t row : {y + down, y - down}) {  // above the top it wraps around, and is no row
-        if (row >= rows_.size()) continue;
-        const double dx = distance_in_row(rows_[row], id, x);
-        best2 = std::min(best2, dx * dx + dy * dy);
-      }
+    const auto first = std::lower_bound(rows_of_.begin(), rows_of_.end(), RowOf(id, 0));
+    const auto last = std::upper_bound(first, rows_of_.end(), RowOf(id, height_));
+    if (first == last) return best2;
+    const std::uint32_t top = first->second, bottom = std::prev(last)->second;
+    const auto look = [&](std::uint32_t row) {
+      const double dx = distance_in_row(rows_[row], id, x), dy = double{y * 1.0} - row;
+      best2 = std::min(best2, dx * dx + dy * dy);
+    };
+    // Outwards from the row, beginning with the nearest that may have it.
+    for (std::uint32_t dy = y < top ? top - y : y > bottom ? y - bottom : 0; dy < height_; ++dy) {
+      if (double{dy * 1.0} * dy >= best2) break;
+      if (y + dy >= top && y + dy <= bottom) look(y + dy);
+      if (y >= top + dy && y <= bottom + dy) look(y - dy);
     }
     return std::sqrt(best2);
   }
@@ -68,8 +80,11 @@ class RunsOfIds {
     return best;
   }
 
-  std::uint32_t width_;
+  using RowOf = std::pair<std::uint64_t, std::uint32_t>;
+
+  std::uint32_t width_, height_;
   std::vector<std::vector<Run>> rows_;
+  std::vector<RowOf> rows_of_;  ///< of each surface the rows that show it, ascending
 };
 
 bool is_behind_backs(const IdPicture& picture, std::size_t pixel) {
@@ -117,7 +132,8 @@ IdDistance measure_ids(const IdPicture& source, const IdPicture& cut, const Allo
       if (source.id[at] == cut.id[at]) continue;
       if (is_behind_backs(source, at) || is_behind_backs(cut, at)) continue;
       const double allowed = std::max(allowed_pixels.at(source, at), allowed_pixels.at(cut, at));
-      const double to_edge = std::min({x + 0.5, source.width - x - 0.5, y + 0.5, source.height - y - 0.5});
+      // To the nearest pixel that is not in the picture.
+      const std::uint32_t to_edge = std::min({x + 1, source.width - x, y + 1, source.height - y});
       if (to_edge <= allowed) continue;
       const double beyond =
           std::max(distance_beyond(source, cut_runs, x, y, allowed), distance_beyond(cut, source_runs, x, y, allowed));

@@ -59,8 +59,8 @@ constexpr std::uint64_t kSmallestPatch = 64;
 /// Many pictures together.
 struct IdTotals {
   std::uint64_t pictures = 0, beyond_limit = 0;
-  IdDistance all;            ///< of all
-  IdDistance worst;          ///< of the picture with the largest share
+  IdDistance all;             ///< of all
+  IdDistance worst;           ///< of the picture with the largest share
   std::string worst_picture;  ///< its name; empty where no pixel is astray
 
   void add(const std::string& picture, const IdDistance& distance);
