@@ -62,7 +62,7 @@ if(NOT MESHLODE_SANITIZE)
 endif()
 
 install(FILES include/meshlode/format.h include/meshlode/page.h include/meshlode/decode.glsl
-              include/meshlode/result.h include/meshlode/runtime.h include/meshlode/meshlode.h
+              include/meshlode/result.h include/meshlode/runtime.h include/meshlode/meshlode.h include/meshlode/version.h
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/meshlode COMPONENT dev)
 
 # Shows the functions of <meshlode/build.h> and <meshlode/meshlode_build.h>, and nothing else: CGAL and what else is inside
@@ -90,3 +90,20 @@ install(EXPORT meshlodeTargets NAMESPACE meshlode:: DESTINATION ${meshlode_packa
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/meshlodeConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/meshlodeConfigVersion.cmake cmake/meshlodeConfig.cmake cmake/MeshlodeAssets.cmake
         DESTINATION ${meshlode_package_dir} COMPONENT dev)
+
+# For compilers without CMake: `pkg-config meshlode`, `meshlode-runtime`, `meshlode-build`. Relative to where the files lie, so that
+# a moved prefix works.
+set(meshlode_pc_dir ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+file(RELATIVE_PATH meshlode_pc_prefix /prefix/${meshlode_pc_dir} /prefix)
+function(meshlode_install_pc name description libs)
+  set(meshlode_pc_name ${name})
+  set(meshlode_pc_description ${description})
+  set(meshlode_pc_libs ${libs})
+  configure_file(${CMAKE_CURRENT_FUNCTION_LIST_DIR}/meshlode.pc.in ${PROJECT_BINARY_DIR}/${name}.pc @ONLY)
+  install(FILES ${PROJECT_BINARY_DIR}/${name}.pc DESTINATION ${meshlode_pc_dir} COMPONENT dev)
+endfunction()
+list(TRANSFORM meshlode_runtime_codecs PREPEND "-l" OUTPUT_VARIABLE meshlode_codec_flags)
+list(JOIN meshlode_codec_flags " " meshlode_codec_flags)
+meshlode_install_pc(meshlode "Reads .lode assets, C" "-lmeshlode")
+meshlode_install_pc(meshlode-runtime "Reads .lode assets, C++" "-lmeshlode_runtime ${meshlode_codec_flags}")
+meshlode_install_pc(meshlode-build "Builds .lode assets, C++ and C" "-lmeshlode_build")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Debian packages of what MeshlodeInstall.cmake installs: `cpack` in the build folder (docs/packages.md). Needs file and
+# Debian packages of what MeshlodeInstall.cmake installs: `cpack` in the build folder (docs/guides/packages.md). Needs file and
 # dpkg-shlibdeps, which find out on what the binaries depend.
 #   libmeshlode0     MIT: libmeshlode.so.0, for C
 #   libmeshlode-dev  headers, the static runtime, what find_package(meshlode) reads

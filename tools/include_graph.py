@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The floors of src/ and who includes whom, as a Mermaid graph: an arrow's number counts the #include lines behind it.
+"""The floors of src/ and who includes whom, as a table with the number of #include lines.
 
-  tools/include_graph.py             prints the graph
+  tools/include_graph.py             prints the table
   tools/include_graph.py --rooms     prints the arrows between rooms as text, most first; exits 1 where rooms of a floor,
                                      and files that lie in the floor itself, include each other in a circle
-  tools/include_graph.py --write     rewrites the block between the markers in docs/architecture.md
-  tools/include_graph.py --check     exits 1 where that block is not the graph
+  tools/include_graph.py --write     rewrites the block between the markers in docs/explanation/architecture.md
+  tools/include_graph.py --check     exits 1 where that block is not the table
 
 Python's standard library alone. What is allowed is another question: cmake/layers.txt, held by tests/house.
 """
@@ -16,7 +16,7 @@ import re
 import sys
 
 REPOSITORY = pathlib.Path(__file__).resolve().parent.parent
-DOCUMENT = REPOSITORY / "docs/architecture.md"
+DOCUMENT = REPOSITORY / "docs/explanation/architecture.md"
 BEGIN = "<!-- include graph: written by tools/include_graph.py --write -->"
 END = "<!-- end of the include graph -->"
 SOURCES = {".h", ".cpp", ".c", ".inl", ".glsl", ".comp", ".vert", ".frag", ".mesh"}
@@ -89,12 +89,14 @@ def order(floors):
     return done
 
 
-def mermaid(floors):
+def table(floors):
+    """A line for each floor, those that include nobody first: what it includes, with the number of #include lines."""
     rank = {floor: i for i, floor in enumerate(order(floors))}
-    lines = ["```mermaid", "graph TD"]
-    for (source, target), count in sorted(floors.items(), key=lambda item: (rank[item[0][0]], rank[item[0][1]])):
-        lines.append(f"  {source} -- {count} --> {target}")
-    return "\n".join(lines + ["```"])
+    lines = ["| floor | includes |", "| --- | --- |"]
+    for source in rank:
+        below = sorted((target for s, target in floors if s == source), key=rank.get)
+        lines.append(f"| `{source}` | " + (", ".join(f"{t} {floors[source, t]}" for t in below) or "nothing") + " |")
+    return "\n".join(lines)
 
 
 def split_document():
@@ -118,16 +120,16 @@ def main(arguments):
         if circle:
             print("include_graph.py: rooms include each other in a circle: " + ", ".join(circle), file=sys.stderr)
         return 1 if circle else 0
-    graph = mermaid(floors_of(arrows))
+    graph = table(floors_of(arrows))
     if not arguments:
         print(graph)
         return 0
     before, between, behind = split_document()
-    block = f"\n{graph}\n"
+    block = f"\n\n{graph}\n\n"
     if arguments == ["--check"]:
         if between == block:
             return 0
-        print("docs/architecture.md: the include graph is stale; run tools/include_graph.py --write", file=sys.stderr)
+        print("docs/explanation/architecture.md: the include graph is stale; run tools/include_graph.py --write", file=sys.stderr)
         return 1
     DOCUMENT.write_text(before + BEGIN + block + END + behind, encoding="utf-8")
     return 0

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What aggregates take and cover, with --aggregate and without: tables, curves and pictures of docs/aggregates.md.
+"""What aggregates take and cover, with --aggregate and without: tables, curves and pictures of docs/log/aggregates.md.
 
   ninja -C build/release meshlode_cli meshlode_generate bench_aggregate bench_aggregate_pictures
-  bench/aggregate/run.py --document      # docs/aggregates.md, docs/pictures/aggregates.{svg,png}
+  bench/aggregate/run.py --document      # docs/log/aggregates.md, docs/pictures/aggregates.{svg,png}
 
 The four scenes of the first table and the eight others are the generator's. `bench_aggregate` measures uniform cuts at
 one pixel of error; builds are timed in turn, with and without, medians.
@@ -138,7 +138,7 @@ def main():
     parser.add_argument("--out", type=Path, default=ROOT / "builder/aggregate", help="assets are written there")
     parser.add_argument("--rounds", type=int, default=7, help="of timed builds")
     parser.add_argument("--jobs", type=int, default=2)
-    parser.add_argument("--document", action="store_true", help="write docs/aggregates.md and its pictures")
+    parser.add_argument("--document", action="store_true", help="write docs/log/aggregates.md and its pictures")
     options = parser.parse_args()
     meshlode, bench = str(options.build / "meshlode"), str(options.build / "bench/aggregate/bench_aggregate")
     options.out.mkdir(parents=True, exist_ok=True)
@@ -168,12 +168,12 @@ def main():
         print("\n" + table)
     if not options.document:
         return
-    book = ROOT / "docs/aggregates.md"
+    book = ROOT / "docs/log/aggregates.md"
     text = book.read_text()
     for key, table in tables.items():
         begin, end = f"<!-- {key}: begin -->", f"<!-- {key}: end -->"
         head, rest = text.split(begin)
-        text = head + begin + "\n" + table + "\n" + end + rest.split(end)[1]
+        text = head + begin + "\n\n" + table + "\n\n" + end + rest.split(end)[1]
     book.write_text(text)
     (ROOT / "docs/pictures/aggregates.svg").write_text(curves(found))
     shutil.copy(picture, ROOT / "docs/pictures/aggregates.png")

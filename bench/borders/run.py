@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What --lock-borders costs in triangles: the table of docs/quality.md.
+"""What --lock-borders costs in triangles: the table of docs/log/quality.md.
 
     cmake --preset release && ninja -C build/release meshlode_cli
     MESHLODE_MODELS=DIR bench/borders/run.py --document
@@ -63,7 +63,7 @@ def row_of(meshlode, name, scene, folder):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--build", default="build/release")
-    parser.add_argument("--document", action="store_true", help="write docs/quality.md")
+    parser.add_argument("--document", action="store_true", help="write docs/log/quality.md")
     options = parser.parse_args()
     table = ["| scene | triangles | locked vertices | " + " | ".join(f"at {error:g}" for error in ERRORS) +
              " | coarsest cut | bytes |", "| --- | ---: | ---: | " + "---: | " * len(ERRORS) + "---: | ---: |"]
@@ -81,7 +81,7 @@ def main():
     if not options.document:
         print(text)
         return
-    page = ROOT / "docs" / "quality.md"
+    page = ROOT / "docs/log/quality.md"
     before, _, rest = page.read_text().partition(BEGIN)
     _, _, after = rest.partition(END)
     page.write_text(f"{before}{BEGIN}\n\n{text}\n{END}{after}")

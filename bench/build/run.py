@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Times whole builds against Debian's gltfpack and writes the tables of docs/performance.md.
+"""Times whole builds against Debian's gltfpack and writes the tables of docs/log/build-time.md.
 
     cmake --preset release && ninja -C build/release
     MESHLODE_MODELS=DIR bench/build/run.py --document
@@ -141,7 +141,7 @@ def write_document(figures, options):
     levels = level_table(figures, figures[0]["model"])
     if levels:
         parts += [f"### Seconds of the levels of {figures[0]['model']}, one thread\n", levels]
-    path = ROOT / "docs/performance.md"
+    path = ROOT / "docs/log/build-time.md"
     document = path.read_text()
     begin, end = document.index(BEGIN) + len(BEGIN), document.index(END)
     path.write_text(document[:begin] + "\n\n" + "\n".join(parts) + "\n" + document[end:])
@@ -155,7 +155,7 @@ def main():
     parser.add_argument("--rounds", type=int, default=7)
     parser.add_argument("--build", default="build/release")
     parser.add_argument("--out", default="out/build", help="assets while they are measured, and figures.json")
-    parser.add_argument("--document", action="store_true", help="write docs/performance.md")
+    parser.add_argument("--document", action="store_true", help="write docs/log/build-time.md")
     options = parser.parse_args()
     bench = Bench(options)
     figures = [bench.measure(model) for model in options.models.split(",")]

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What care costs: the table of docs/numerics.md and docs/pictures/care.svg.
+"""What care costs: the table of docs/log/numerics.md and docs/pictures/care.svg.
 
     cmake --preset release -DMESHLODE_TESTS=ON && ninja -C build/release meshlode_cli hard_cases
     MESHLODE_MODELS=DIR bench/care/run.py --document
@@ -127,7 +127,7 @@ def main():
     parser.add_argument("--rounds", type=int, default=3)
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--only-kept", action="store_true", help="try no hard cases but those that --out has")
-    parser.add_argument("--document", action="store_true", help="write docs/numerics.md and docs/pictures/care.svg")
+    parser.add_argument("--document", action="store_true", help="write docs/log/numerics.md and docs/pictures/care.svg")
     options = parser.parse_args()
     models = Path(os.environ["MESHLODE_MODELS"])
     scenes = [ROOT / "data" / "rock.glb", ROOT / "data" / "crystal.glb", models / "bunny.glb", models / "fandisk.glb"]
@@ -165,7 +165,7 @@ def main():
     if not options.document:
         print(text)
         return
-    page = ROOT / "docs" / "numerics.md"
+    page = ROOT / "docs/log/numerics.md"
     before, _, rest = page.read_text().partition(BEGIN)
     _, _, after = rest.partition(END)
     page.write_text(f"{before}{BEGIN}\n\n{text}\n{END}{after}")

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""measure.py MESHLODE MODELS DATA: the table of docs/plan.md.
+"""measure.py MESHLODE MODELS DATA: the table of docs/log/plan.md.
 
 What the plan of each scene leaves out and what that saves against `--keep all`, by `plan --measure`. MODELS has
 FlightHelmet and dragon.glb, DATA is data/; a scene with vertex colours alone is made here.

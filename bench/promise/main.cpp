@@ -2,7 +2,7 @@
 // bench_promise SCENE --position A.lode --texels B.lode --appearance C.lode: what each promise keeps and costs, over
 // cameras around the scene. Of each asset the cut that its promise selects; its largest drift in pixels by the judge's
 // own metric, in the units of all three promises; triangles and bytes; and the picture against that of full resolution.
-// One JSON document (docs/quality.md, "What is painted").
+// One JSON document (docs/log/quality.md, "What is painted").
 #include <algorithm>
 #include <array>
 #include <cmath>

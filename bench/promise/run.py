@@ -3,7 +3,7 @@
 """What each promise keeps and costs: a table, and pictures side by side, over cameras around a few scenes.
 
   ninja -C build/release meshlode_cli meshlode_generate bench_promise
-  MESHLODE_MODELS=DIR bench/promise/run.py --document      # docs/quality.md, docs/pictures/promise-*.png
+  MESHLODE_MODELS=DIR bench/promise/run.py --document      # docs/log/quality.md, docs/pictures/promise-*.png
 
 Every scene is built three times, `--promise position`, `texels` and `appearance`. `bench_promise` selects by each asset's
 own promise from 50 cameras around the scene and measures the cuts against the source. Figures of scenes are kept in --out:
@@ -78,7 +78,7 @@ def main():
     parser.add_argument("--out", default="builder/promise", help="folder of assets and figures")
     parser.add_argument("--orbits", type=int, default=50)
     parser.add_argument("--jobs", type=int, default=0, help="threads; 0 is one per core")
-    parser.add_argument("--document", action="store_true", help="write docs/quality.md and docs/pictures/promise-*.png")
+    parser.add_argument("--document", action="store_true", help="write docs/log/quality.md and docs/pictures/promise-*.png")
     options = parser.parse_args()
     build, folder = ROOT / options.build, ROOT / options.out
     folder.mkdir(parents=True, exist_ok=True)
@@ -96,8 +96,8 @@ def main():
     for name in PICTURES:
         picture = folder / f"promise-{name}.png"
         (ROOT / "docs" / "pictures" / picture.name).write_bytes(picture.read_bytes())
-        shown.append(f"![{name}: full resolution, and cuts by position, texels and appearance](pictures/{picture.name})")
-    page = ROOT / "docs" / "quality.md"
+        shown.append(f"![{name}: full resolution, and cuts by position, texels and appearance](../pictures/{picture.name})")
+    page = ROOT / "docs/log/quality.md"
     before, _, rest = page.read_text().partition(BEGIN)
     _, _, after = rest.partition(END)
     page.write_text(f"{before}{BEGIN}\n\n{text}\n\n" + "\n\n".join(shown) + f"\n\n{END}{after}")

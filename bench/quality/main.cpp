@@ -2,7 +2,7 @@
 // Quality: uniform cuts of an asset against its source. For each threshold: triangles, true maximum and RMS deviation
 // both ways, stored error. Then triangles at equal deviation: the fewest over all actual cuts whose true figure is at
 // most x, by the selection error and for the RMS by the quadric's too, and what that very cut does to shading normals
-// and UVs; with --normals the fewest that keep the normals as well. docs/quality.md explains the measures.
+// and UVs; with --normals the fewest that keep the normals as well. docs/log/quality.md explains the measures.
 #include <algorithm>
 #include <chrono>
 #include <cmath>

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Builds the assets, measures them with bench_quality and writes the figures into docs/quality.md and docs/pictures/.
+"""Builds the assets, measures them with bench_quality and writes the figures into docs/log/quality.md and docs/pictures/.
 
     cmake --preset release -DMESHLODE_BENCH=ON && ninja -C build/release
     MESHLODE_MODELS=DIR bench/quality/run.py
@@ -221,7 +221,7 @@ def write_pictures(figures, models):
 
         path = ROOT / "docs/pictures" / f"quality-{model}.svg"
         path.write_text(plot.svg(model, curves("max", AT_MAX), curves("rms", AT_RMS)))
-        links.append(f"![{model}: triangles over true deviation](pictures/{path.name})\n")
+        links.append(f"![{model}: triangles over true deviation](../pictures/{path.name})\n")
     return "\n".join(links)
 
 
@@ -240,7 +240,7 @@ def write_document(figures, options):
         "### How true the stored errors are, and what they cost\n", tier_table(figures, models),
         write_pictures(figures, models),
     ]
-    path = ROOT / "docs/quality.md"
+    path = ROOT / "docs/log/quality.md"
     document = path.read_text()
     begin, end = document.index(BEGIN) + len(BEGIN), document.index(END)
     path.write_text(document[:begin] + "\n\n" + "\n".join(p for p in parts if p) + "\n" + document[end:])

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Builds models with each disk codec and prints what the whole file weighs, as the tables of docs/size.md.
+"""Builds models with each disk codec and prints what the whole file weighs, as the tables of docs/log/size.md.
 
     bench/size/disk_form.py build/release/meshlode MODELS DATA [name …]
 

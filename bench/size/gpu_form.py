@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Builds models and prints what each stream of the decoded pages weighs, as the tables of docs/size.md.
+"""Builds models and prints what each stream of the decoded pages weighs, as the tables of docs/log/size.md.
 
     bench/size/gpu_form.py build/release/meshlode MODELS [name …]
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What --keep-topology costs: the table of docs/numerics.md.
+"""What --keep-topology costs: the table of docs/log/numerics.md.
 
     cmake --preset release && ninja -C build/release meshlode_cli
     MESHLODE_MODELS=DIR bench/topology/run.py --document
@@ -72,7 +72,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--build", default="build/release")
     parser.add_argument("--rounds", type=int, default=3)
-    parser.add_argument("--document", action="store_true", help="write docs/numerics.md")
+    parser.add_argument("--document", action="store_true", help="write docs/log/numerics.md")
     options = parser.parse_args()
     models = Path(os.environ["MESHLODE_MODELS"])
     scenes = [ROOT / "data" / f"{name}.glb" for name in ("rock", "crystal", "terrain", "foliage")]
@@ -87,7 +87,7 @@ def main():
     if not options.document:
         print(text)
         return
-    page = ROOT / "docs" / "numerics.md"
+    page = ROOT / "docs/log/numerics.md"
     before, _, rest = page.read_text().partition(BEGIN)
     _, _, after = rest.partition(END)
     page.write_text(f"{before}{BEGIN}\n\n{text}\n{END}{after}")

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A cluster of a decoded page, read as it lies in a buffer of 32-bit words (docs/format.md, sections 12 and 13): any vertex
+// A cluster of a decoded page, read as it lies in a buffer of 32-bit words (docs/reference/format.md, sections 12 and 13): any vertex
 // and any triangle alone, in one thread, to the same integers as on the CPU (I9). GLSL 4.5, integers only.
 //
 // Before including: #define LODE_WORD(i) … - word i of whatever holds the page; i is counted from where the caller says

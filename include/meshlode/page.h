@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Where everything of a cluster lies in a decoded page (docs/format.md, Pages). Header-only, C++ runtime only;
-// decode.glsl is the same for GPUs. A layout that was read without complaint lies inside the page, so that code behind
-// it needs no checks of its own, whatever the bytes were; what the numbers mean is left to decoding.
+/// \file
+/// Where everything of a cluster lies in a decoded page (docs/reference/format.md, Pages). Header-only, C++ runtime
+/// only; decode.glsl is the same for GPUs. A layout that was read without complaint lies inside the page, so that code
+/// behind it needs no checks of its own, whatever the bytes were; what the numbers mean is left to decoding.
 #pragma once
 
 #include <bit>
@@ -13,37 +14,53 @@
 
 namespace meshlode::format {
 
-/// Bits are counted from the page's first word, words too.
+/// Where the parts of one cluster lie in its page, and the numbers of its head (docs/reference/format.md, sections 12
+/// and 13). Words and bits are counted from the first word of the page.
 struct ClusterLayout {
-  std::uint32_t vertex_count = 0, triangle_count = 0;
-  std::uint32_t head_word = 0;  ///< of the cluster's head
-  std::uint32_t data_word = 0;  ///< of its data
-  std::int32_t minimum[3] = {};
-  std::uint32_t bits[3] = {};
-  std::uint32_t shear_axis = 0;
-  std::int32_t shear_u = 0, shear_v = 0;
-  std::uint32_t chart = 0;
-  std::int32_t normal_minimum[2] = {};
-  std::uint32_t normal_bits[2] = {};
-  std::uint32_t strip_count = 0, slot_count = 0, reference_count = 0, reference_bits = 0, restart_bits = 0;
-  std::uint32_t material_word = 0, material_count = 0;  ///< ranges; none where the mesh has one material
-  std::uint32_t uv_word[kMaxUvSets] = {}, uv_range_count[kMaxUvSets] = {};
-  std::uint32_t color_word = 0;
-  std::uint32_t stream_word = 0;
-  std::uint32_t position_bit = 0, normal_bit = 0, uv_bit[kMaxUvSets] = {}, color_bit = 0;
-  std::uint32_t turn_bit = 0, fresh_bit = 0, restart_bit = 0, reference_bit = 0;
-  std::uint32_t end_bit = 0;   ///< behind the last bit of the stream
-  std::uint32_t end_word = 0;  ///< behind the cluster's data: the next one's, or the page's zero word
+  std::uint32_t vertex_count = 0;                 ///< vertices, 1 to 256
+  std::uint32_t triangle_count = 0;               ///< triangles, 1 to 256
+  std::uint32_t head_word = 0;                    ///< first word of the head
+  std::uint32_t data_word = 0;                    ///< first word of the data
+  std::int32_t minimum[3] = {};                   ///< of the positions, grid units
+  std::uint32_t bits[3] = {};                     ///< per vertex and axis of positions, 0 to 24
+  std::uint32_t shear_axis = 0;                   ///< the axis that is sheared, 0 to 2
+  std::int32_t shear_u = 0;                       ///< shear by the first other axis
+  std::int32_t shear_v = 0;                       ///< shear by the second other axis
+  std::uint32_t chart = 0;                        ///< of the normals, 0 to 5
+  std::int32_t normal_minimum[2] = {};            ///< of the stored normals
+  std::uint32_t normal_bits[2] = {};              ///< per vertex and value of normals, 0 to 14
+  std::uint32_t strip_count = 0;                  ///< strips of triangles
+  std::uint32_t slot_count = 0;                   ///< vertices that the strips name
+  std::uint32_t reference_count = 0;              ///< slots that refer to an earlier vertex
+  std::uint32_t reference_bits = 0;               ///< per reference, 1 to 8
+  std::uint32_t restart_bits = 0;                 ///< per first triangle of a strip
+  std::uint32_t material_word = 0;                ///< first material range
+  std::uint32_t material_count = 0;               ///< material ranges; 0 if the mesh has one material
+  std::uint32_t uv_word[kMaxUvSets] = {};         ///< first UV range of each set
+  std::uint32_t uv_range_count[kMaxUvSets] = {};  ///< UV ranges of each set
+  std::uint32_t color_word = 0;                   ///< the colour range
+  std::uint32_t stream_word = 0;                  ///< first word of the bit stream
+  std::uint32_t position_bit = 0;                 ///< first bit of the positions
+  std::uint32_t normal_bit = 0;                   ///< first bit of the normals
+  std::uint32_t uv_bit[kMaxUvSets] = {};          ///< first bit of each UV set
+  std::uint32_t color_bit = 0;                    ///< first bit of the colours
+  std::uint32_t turn_bit = 0;                     ///< first bit of the turns
+  std::uint32_t fresh_bit = 0;                    ///< first bit of the flags of fresh vertices
+  std::uint32_t restart_bit = 0;                  ///< first bit of the strips' first triangles
+  std::uint32_t reference_bit = 0;                ///< first bit of the references
+  std::uint32_t end_bit = 0;                      ///< after the last bit of the stream
+  std::uint32_t end_word = 0;                     ///< after the cluster's data: the next one's, or the zero word
 };
 
-/// `count` bits from bit `at`. \pre count <= 32 and the word behind the field's first word is there
+/// Reads `count` bits from bit `at`. \pre count <= 32, and the word after the field's first word can be read
 [[nodiscard]] constexpr std::uint32_t get_bits(const std::uint32_t* words, std::uint32_t at, std::uint32_t count) {
   const std::uint64_t pair = words[at / 32] | std::uint64_t{words[at / 32 + 1]} << 32;
   return static_cast<std::uint32_t>(pair >> at % 32 & ((std::uint64_t{1} << count) - 1U));
 }
 
-/// Of the cluster at `index` of the page. Null where the layout is sound and ends before the page's last word, else the
-/// field that is wrong.
+/// Computes where the parts of cluster number `index` of a decoded page lie.
+/// \return nullptr on success; otherwise the name of the first invalid field (static storage), and `out` is
+/// unspecified. After success every offset in `out` lies inside `page`, whatever the bytes were.
 [[nodiscard]] constexpr const char* read_cluster_layout(const MeshRecord& mesh, std::span<const std::uint32_t> page,
                                                         std::uint32_t index, ClusterLayout& out) {
   constexpr std::uint32_t kPageHeaderWords = sizeof(PageHeader) / 4;

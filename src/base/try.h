@@ -3,8 +3,8 @@
 #pragma once
 
 /// Returns the error of `...`, a Status or a Result whose value is not asked for, where it is one.
-#define TRY(...)                                                            \
-  do {                                                                      \
+#define TRY(...)                                                                 \
+  do {                                                                           \
     if (auto try_status = (__VA_ARGS__); !try_status) return try_status.error(); \
   } while (false)
 

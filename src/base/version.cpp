@@ -4,7 +4,7 @@
 namespace meshlode {
 
 const char* program_version() {
-  return "meshlode " MESHLODE_VERSION;
+  return "meshlode " MESHLODE_VERSION_TEXT;
 }
 
 }  // namespace meshlode

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "builder/build_mesh.h"
 
-#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -59,21 +58,11 @@ struct StoredPlace {
 };
 
 /// The levels of one prepared mesh, whose surface is freed: by coverage where it is an aggregate, else by distances.
-Result<LodDag> build_levels(PreparedMesh& mesh, bool is_aggregate, const Survey& found, const PaintedUnits& painted,
-                            const PipelineOptions& options, const MeshOptions& own, const EncodeOptions& encoding,
-                            const std::function<bool(std::uint32_t, std::uint64_t)>& on_level) {
-  DagOptions coarsening = dag_options(options, mesh, encoding);
-  coarsening.on_level = on_level;
-  coarsening.simplify.painted = painted;
-  if (own.error_tier == format::ErrorTier::kQem) {
-    release(mesh.exact_positions, mesh.exact_on_grid, mesh.exact_triangles);
-  }
-  Result<LodDag> dag = is_aggregate ? build_aggregate_dag_and_free(mesh, found.coarse.of_source, coarsening)
-                                    : build_dag_and_free(mesh, coarsening);
-  if (!dag) return dag;
-  if (own.error_tier != format::ErrorTier::kQem) snap_attributes(mesh.layout, encoding, *dag);
-  const Status status = measure_and_free(mesh, own.error_tier, *dag);
-  return status ? std::move(dag) : status.error();
+Result<LodDag> build_levels(PreparedMesh& mesh, bool is_aggregate, const Survey& found, const DagOptions& coarsening,
+                            format::ErrorTier tier) {
+  if (tier == format::ErrorTier::kQem) release(mesh.exact_positions, mesh.exact_on_grid, mesh.exact_triangles);
+  return is_aggregate ? build_aggregate_dag_and_free(mesh, found.coarse.of_source, coarsening)
+                      : build_dag_and_free(mesh, coarsening);
 }
 
 }  // namespace
@@ -129,16 +118,23 @@ Result<BuiltMesh> build_mesh(const Source& from, std::size_t index, const Survey
                                   own.error_tier == format::ErrorTier::kCertified);
   }
   const PaintedUnits units = painted ? units_to_simplify_by(*painted, mesh->diagonal) : PaintedUnits();
-  const DagOptions coarsening = dag_options(options, *mesh, encoding);
+  DagOptions coarsening = dag_options(options, *mesh, encoding);
+  coarsening.simplify.painted = units;
   LevelClock levels(index);
-  const Result<LodDag> dag = build_levels(*mesh, aggregate.is_aggregate, found, units, options, own, encoding,
-                                          [&](std::uint32_t level, std::uint64_t triangles) {
-                                            levels.end(level, triangles);
-                                            return progress.report(index, level, triangles);
-                                          });
+  coarsening.on_level = [&](std::uint32_t level, std::uint64_t triangles) {
+    levels.end(level, triangles);
+    return progress.report(index, level, triangles);
+  };
+  Result<LodDag> dag = build_levels(*mesh, aggregate.is_aggregate, found, coarsening, own.error_tier);
   if (!dag) return Error{dag.error().code, label, dag.error().detail};
   built.levels = levels.times();
   built.clock.end(Stage::kDag);
+
+  if (own.error_tier != format::ErrorTier::kQem) snap_attributes(mesh->layout, encoding, *dag);
+  if (const Status status = measure_and_free(*mesh, own.error_tier, *dag); !status) {
+    return Error{status.error().code, label, status.error().detail};
+  }
+  built.clock.end(Stage::kMeasure);
 
   const Hierarchy hierarchy =
       build_hierarchy(*dag, *mesh, options.hooks != nullptr ? options.hooks->enclosing_ball : enclosing_ball);

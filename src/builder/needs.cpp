@@ -15,7 +15,7 @@ namespace meshlode::builder {
 
 namespace {
 
-// Bytes, measured over the models of docs/performance.md: of the program, of a thread, of each byte of the scene's
+// Bytes, measured over the models of docs/log/build-time.md: of the program, of a thread, of each byte of the scene's
 // document while it is read, of what is kept of a mesh when it is done; and while it is in work of a triangle, of a
 // position (a closed surface has half as many as triangles, loose cards twice as many) and of a vertex's attributes.
 constexpr std::uint64_t kProcess = 22u << 20u;

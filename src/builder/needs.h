@@ -32,8 +32,8 @@ constexpr std::uint64_t kMaxMeshVertices = 4294967295;
 [[nodiscard]] Status check_mesh_counts(const MeshCounts& counts, const std::string& mesh);
 
 /// What the whole process will take at most, the scene included: so much from the beginning to the end, and so much
-/// more while a mesh is in work. Measured (docs/performance.md, "Memory") and meant to be a little more than what will
-/// be found.
+/// more while a mesh is in work. Measured (docs/log/build-time.md, "Memory") and meant to be a little more than what
+/// will be found.
 struct MemoryEstimate {
   struct Mesh {
     std::uint64_t bytes = 0;

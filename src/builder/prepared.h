@@ -57,8 +57,8 @@ struct PreparedMesh {
   std::vector<Vec3d> exact_normals;
   std::uint64_t source_triangles = 0;
   std::uint64_t source_vertices = 0;
-  /// Without area and no part of the source (docs/format.md, "The source"). A triangle without area that lies along
-  /// edges of others stays: its border is not zero, so that taking it away would open a crack (I6).
+  /// Without area and no part of the source (docs/reference/format.md, "The source"). A triangle without area that lies
+  /// along edges of others stays: its border is not zero, so that taking it away would open a crack (I6).
   std::uint64_t dropped_degenerate = 0;
   std::uint64_t dropped_duplicate = 0;  ///< same positions, winding, wedges and material as an earlier triangle
   std::uint64_t dropped_repaired = 0;

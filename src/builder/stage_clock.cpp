@@ -10,7 +10,8 @@ void StageClock::end(Stage stage) {
 }
 
 void StageClock::add_to(std::vector<StageTime>& stages) const {
-  constexpr std::array<const char*, kStageCount> kNames = {"plan", "prepare", "dag", "hierarchy", "encode", "write"};
+  constexpr std::array<const char*, kStageCount> kNames = {"plan",      "prepare", "dag",  "measure",
+                                                           "hierarchy", "encode",  "write"};
   if (stages.empty()) {
     for (const char* name : kNames) stages.push_back({name, 0.0});
   }

@@ -11,8 +11,8 @@
 
 namespace meshlode::builder {
 
-enum class Stage : std::uint8_t { kPlan, kPrepare, kDag, kHierarchy, kEncode, kWrite };
-constexpr std::size_t kStageCount = 6;
+enum class Stage : std::uint8_t { kPlan, kPrepare, kDag, kMeasure, kHierarchy, kEncode, kWrite };
+constexpr std::size_t kStageCount = 7;
 
 /// Runs from when it is made.
 class StageClock {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The grid of a mesh: position = origin + step · q with step = mantissa · 2^log2 (docs/format.md, section 4). Rounding
-// is floor(x · s + 0.5), never a truncation: truncation rounds negative coordinates the wrong way.
+// The grid of a mesh: position = origin + step · q with step = mantissa · 2^log2 (docs/reference/format.md, section 4).
+// Rounding is floor(x · s + 0.5), never a truncation: truncation rounds negative coordinates the wrong way.
 #pragma once
 
 #include <cmath>

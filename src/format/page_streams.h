@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What a stored page consists of (docs/format.md, Stored pages): names for the streams and tables, and the order of the
-// words that are not geometry.
+// What a stored page consists of (docs/reference/format.md, Stored pages): names for the streams and tables, and the
+// order of the words that are not geometry.
 #pragma once
 
 #include <array>

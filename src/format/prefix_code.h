@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Prefix codes of stored pages (docs/format.md, Prefix codes): canonical, at most kMaxCodeBits long, one table a
-// context. Small numbers are symbols themselves; larger ones are a symbol for their leading three bits and raw bits for
-// the rest, because the low bits of a prediction's error are noise that no code shortens.
+// Prefix codes of stored pages (docs/reference/format.md, Prefix codes): canonical, at most kMaxCodeBits long, one
+// table a context. Small numbers are symbols themselves; larger ones are a symbol for their leading three bits and raw
+// bits for the rest, because the low bits of a prediction's error are noise that no code shortens.
 #pragma once
 
 #include <array>

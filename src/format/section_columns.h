@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Sections whose codec is `columns`: tables and texts in prefix codes of their own, without any library
-// (docs/format.md, Stored sections).
+// (docs/reference/format.md, Stored sections).
 #pragma once
 
 #include <array>

@@ -117,6 +117,7 @@ TEST_P(CApi, TablesAreThoseOfTheFile) {
   EXPECT_EQ(size, 0U);
   EXPECT_EQ(meshlode_blob_bytes(asset_, 0, &size), nullptr);
   EXPECT_EQ(meshlode_format_version(), format::kVersion);
+  EXPECT_EQ(meshlode_version(), static_cast<std::uint32_t>(MESHLODE_VERSION));
 }
 
 TEST_P(CApi, CutsAreThoseOfTheRule) {

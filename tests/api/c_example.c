@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The C example of docs/api.md: opens an asset, streams its pages coarse to fine, and counts what a camera would draw
- * once everything is there. */
+ * The C example of docs/reference/api.md: opens an asset, streams its pages coarse to fine, and counts what a camera
+ * would draw once everything is there. */
 #include <stdio.h>
 #include <stdlib.h>
 

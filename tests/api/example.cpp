@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The example of docs/api.md: a grid of hills built from arrays, then drawn from near and from far.
+// The example of docs/reference/api.md: a grid of hills built from arrays, then drawn from near and from far.
 #include <cstdio>
 #include <vector>
 

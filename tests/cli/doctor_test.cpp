@@ -92,7 +92,7 @@ TEST(Doctor, ThereIsABrokenSceneForEveryFault) {
   EXPECT_EQ(broken, std::set<std::string>(ids.begin(), ids.end()));
 }
 
-/// The case of docs/hard-cases.md that a fault names has that fault somewhere along its parameter.
+/// The case of docs/reference/hard-cases.md that a fault names has that fault somewhere along its parameter.
 TEST(Doctor, TheHardCaseThatItNamesHasTheFault) {
   const auto has_fault = [](const test::hard::HardCase& hard_case, scene::FaultKind kind) {
     return std::any_of(hard_case.sweep.begin(), hard_case.sweep.end(), [&](double parameter) {

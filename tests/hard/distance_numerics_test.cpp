@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The bounds of docs/numerics.md on distances, against 113 bits of mantissa.
+// The bounds of docs/explanation/numerics.md on distances, against 113 bits of mantissa.
 #include <gtest/gtest.h>
 
 #include <algorithm>

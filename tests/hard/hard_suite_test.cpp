@@ -246,7 +246,7 @@ TEST(HardSuite, ACaseThatHoldsLessThanThePageSaysIsFound) {
 
 /// doctor links to its rows.
 TEST(HardSuite, ThePageHasARowForEveryCaseAndNoOther) {
-  std::ifstream in(MESHLODE_SOURCE_DIR "/docs/hard-cases.md", std::ios::binary);
+  std::ifstream in(MESHLODE_SOURCE_DIR "/docs/reference/hard-cases.md", std::ios::binary);
   const std::string page(std::istreambuf_iterator<char>(in), {});
   std::vector<std::string> rows, names;
   constexpr std::string_view kAnchor = "<a id=\"";

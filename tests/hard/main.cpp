@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// hard_cases: the hard cases one by one, their sweeps, and the table of docs/hard-cases.md.
+// hard_cases: the hard cases one by one, their sweeps, and the table of docs/reference/hard-cases.md.
 #include <algorithm>
 #include <atomic>
 #include <charconv>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The bounds of docs/numerics.md against rational numbers and 113 bits of mantissa, each with the largest share of the
-// bound that was seen (printed, and kept in the document).
+// The bounds of docs/explanation/numerics.md against rational numbers and 113 bits of mantissa, each with the largest
+// share of the bound that was seen (printed, and kept in the document).
 #include <gtest/gtest.h>
 
 #include <algorithm>

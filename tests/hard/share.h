@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How much of a bound of docs/numerics.md was used: the largest share that a test saw.
+// How much of a bound of docs/explanation/numerics.md was used: the largest share that a test saw.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -62,7 +62,7 @@ TEST(Documents, EveryLinkLeadsToAFile) {
 }
 
 TEST(Documents, EveryRoomIsInTheArchitecture) {
-  const std::string text = read_file("docs/architecture.md").text;
+  const std::string text = read_file("docs/explanation/architecture.md").text;
   for (const fs::directory_entry& floor : fs::directory_iterator(repository() / "src")) {
     const std::string floor_name = floor.path().filename().string();
     const std::size_t start = text.find("**`" + floor_name + "/`**");

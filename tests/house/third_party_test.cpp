@@ -133,7 +133,7 @@ TEST(ThirdParty, AWrappedLibraryIsSeenByItsFolderAlone) {
   EXPECT_EQ(users.size(), kWrappers.size());
 }
 
-/// docs/portability.md: what an engine ships asks the system in one place.
+/// docs/reference/portability.md: what an engine ships asks the system in one place.
 TEST(ThirdParty, TheRuntimeSeesTheSystemInOneFileForEach) {
   std::set<std::string> bodies;
   for (const SourceFile& file : read_tree({"src/base", "src/format", "src/run", "include"}, kSources)) {

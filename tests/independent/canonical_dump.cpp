@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // canonical_dump FILE: every integer of an asset as the program's own reader and decoder see it, floats as their bits:
-// the text that lode.py prints too. Field by field, in the order of docs/format.md, so that neither layout nor decoding
-// is taken from the other side.
+// the text that lode.py prints too. Field by field, in the order of docs/reference/format.md, so that neither layout
+// nor decoding is taken from the other side.
 #include <bit>
 #include <cstdio>
 #include <string>

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Prefix codes, stored sections and LZ4 blocks (docs/codecs.md, sections 1 and 2)."""
+"""Prefix codes, stored sections and LZ4 blocks (docs/reference/codecs.md, sections 1 and 2)."""
 
 import struct
 

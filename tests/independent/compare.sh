@@ -52,7 +52,7 @@ awk 'BEGIN { for (k = 0; k < 256; ++k) { x = k % 16; y = int(k / 16); z = k * 7 
 "$python" "$here/differ.py" "$dump" cards.out $((${STRIDE:-17} * 5)) || failed=1
 printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >triangle.obj
 "$meshlode" build triangle.obj -o triangle.out --grid 1 --quiet || exit 2
-"$python" "$here/hex_dump.py" "$here/../../docs/format.md" triangle.out || failed=1
+"$python" "$here/hex_dump.py" "$here/../../docs/reference/format.md" triangle.out || failed=1
 # What it cannot read it says so.
 for codec in zstd draco; do
   "$python" "$here/lode.py" "seeds/reader/scene-$codec.lode" >/dev/null 2>refused.txt

@@ -90,7 +90,7 @@ class Gltf:
             self.merge_meshes()
 
     def merge_meshes(self):
-        """Of equal meshes the first is drawn in the place of the others, which lose their primitives (docs/import.md)."""
+        """Of equal meshes the first is drawn in the place of the others, which lose their primitives (docs/reference/input.md)."""
         kept = ("POSITION", "NORMAL", "COLOR_0", "TEXCOORD_0", "TEXCOORD_1", "TEXCOORD_2", "TEXCOORD_3")
         first, place = {}, {}
         try:
@@ -111,7 +111,7 @@ class Gltf:
                 node["mesh"] = place.get(node["mesh"], node["mesh"])
 
     def expand_instances(self):
-        """EXT_mesh_gpu_instancing: a node for each instance (docs/import.md), behind the others."""
+        """EXT_mesh_gpu_instancing: a node for each instance (docs/reference/input.md), behind the others."""
         added, nodes = [], self.root.get("nodes", [])
         for n, node in enumerate(nodes):
             instancing = node.get("extensions", {}).pop("EXT_mesh_gpu_instancing", None)

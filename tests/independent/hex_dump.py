@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""hex_dump.py FORMAT_MD FILE: is every line of the worked dump in docs/format.md what the built file has at that place?"""
+"""hex_dump.py FORMAT_MD FILE: is every line of the worked dump in docs/reference/format.md what the built file has at that place?"""
 
 import re
 import sys

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The record tables of docs/format.md, typed in."""
+"""The record tables of docs/reference/format.md, typed in."""
 
 TABLES_TEXT = {
     "HEADER": """

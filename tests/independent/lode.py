@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A second reader of .lode files, written from docs/format.md alone and with Python's standard library alone.
+"""A second reader of .lode files, written from docs/reference/format.md alone and with Python's standard library alone.
 
     python3 lode.py FILE         the canonical text: every integer of every table and page, floats as their bits
     python3 lode.py --hash FILE  its SHA-256

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Pages: heads, ranges, the bit stream and strips (docs/format.md, sections 12 and 13)."""
+"""Pages: heads, ranges, the bit stream and strips (docs/reference/format.md, sections 12 and 13)."""
 
 import struct
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Skinned meshes in the rest pose of a glTF file, from the specification's section 3.7.3 and from what docs/import.md says
+"""Skinned meshes in the rest pose of a glTF file, from the specification's section 3.7.3 and from what docs/reference/input.md says
 of the asset: which meshes are moved by one matrix, which vertex by vertex, and what the tree looks like afterwards."""
 
 import math

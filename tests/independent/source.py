@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the source of a mesh is, and which grid point each of its positions goes to (docs/format.md, section 17).
+"""What the source of a mesh is, and which grid point each of its positions goes to (docs/reference/format.md, section 17).
 
 Positions are tuples of three floats. Area is decided exactly, with fractions where floats leave it open."""
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """source_match.py ASSET SOURCE [SPOIL]: does level 0 hold what the glTF file says?
 
-Both sides are read here alone: the asset by lode.py (from docs/format.md), the source by gltf.py (from glTF's
+Both sides are read here alone: the asset by lode.py (from docs/reference/format.md), the source by gltf.py (from glTF's
 specification). Compared are, mesh by mesh, the triangles with their orientation, material and the attributes of their
 corners, each within the quantization that the asset states; then instances, materials, images, animations and the rest
 of the document. SPOIL changes one thing of what was read of the source first: then something must be found."""
@@ -227,7 +227,7 @@ class MeshMatch:
         if self.record["normal_mode"] == 1:
             stored, at = unit(vertex[at:at + 3]), at + 3
             normal = unit(corner.normal)
-            # The stored direction is at most sqrt(2) / M radians away (docs/format.md, section 4).
+            # The stored direction is at most sqrt(2) / M radians away (docs/reference/format.md, section 4).
             limit = math.sqrt(2) / self.record["normal_scale"] * (1 + 1e-6) + 1e-6
             if normal is not None and math.dist(stored, normal) > limit:
                 return False

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Stored pages: codecs lz4 and strips (docs/codecs.md, section 3)."""
+"""Stored pages: codecs lz4 and strips (docs/reference/codecs.md, section 3)."""
 
 import struct
 

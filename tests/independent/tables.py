@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The rules of the tables: ids, ranges, enumerators, and who partitions what (docs/format.md, sections 4 to 11)."""
+"""The rules of the tables: ids, ranges, enumerators, and who partitions what (docs/reference/format.md, sections 4 to 11)."""
 
 from rules import INFINITE, NONE, check
 

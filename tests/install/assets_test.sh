@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# assets_test.sh CMAKE BUILD_FOLDER COMPILER BATCH_MD: the CMake example of docs/batch.md against an installed package, with
+# assets_test.sh CMAKE BUILD_FOLDER COMPILER BATCH_MD: the CMake example of docs/guides/batches.md against an installed package, with
 # each generator: what is built at first, that nothing is the second time, and which assets follow a change.
 set -euo pipefail
 cmake=$1 build=$2 compiler=$3 page=$4

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 # bare_root_test.sh CPACK BUILD_FOLDER SOURCE: the packages where nothing else is. In a bare Debian 12 the container file of
-# docs/packages.md is carried out line by line, the program is used, and with the packages for developers the examples of
-# docs/api.md and a stranger's project are built and run.
+# docs/guides/packages.md is carried out line by line, the program is used, and with the packages for developers the examples of
+# docs/reference/api.md and a stranger's project are built and run.
 set -euo pipefail
 cpack=$1 build=$2 source=$3
 skip() { echo "SKIPPED: $*"; exit 77; }
@@ -65,8 +65,8 @@ lines=0
 while read -r instruction arguments; do
   carry_out "$instruction" "$arguments"
   lines=$((lines + 1))
-done < <(awk '/^```dockerfile/ { on = 1; next } /^```/ { on = 0 } on' "$source/docs/packages.md" | sed -e ':a' -e '/\\$/N; s/\\\n//; ta')
-[ $lines -ge 4 ] && [ "$entry" = meshlode ] || fail "no container file in docs/packages.md"
+done < <(awk '/^```dockerfile/ { on = 1; next } /^```/ { on = 0 } on' "$source/docs/guides/packages.md" | sed -e ':a' -e '/\\$/N; s/\\\n//; ta')
+[ $lines -ge 4 ] && [ "$entry" = meshlode ] || fail "no container file in docs/guides/packages.md"
 
 echo "== the program"
 cp "$source/data/crystal.glb" "$root$folder/"
@@ -83,11 +83,11 @@ cp -r "$source/tests/api"/{example.cpp,c_example.c,c_build_example.c} "$source/t
 inside "apt-get update && apt-get install -y --no-install-recommends /packages/*.deb g++ cmake make" >"$work/log" 2>&1 ||
   { cat "$work/log"; fail "the packages do not install"; }
 folder=/examples
-# The lines of docs/packages.md themselves.
+# The lines of docs/guides/packages.md themselves.
 while read -r line; do
   echo "$line"
   inside "$line"
-done < <(grep -E '^(c\+\+|cc) ' "$source/docs/packages.md")
+done < <(grep -E '^(c\+\+|cc) ' "$source/docs/guides/packages.md")
 inside "./example example.lode"
 inside "./c_example example.lode"
 inside "./c_build_example"

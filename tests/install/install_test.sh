@@ -18,6 +18,18 @@ done
 
 "$work/consumer/use_c" "$work/triangle.lode"
 
+# The same by pkg-config, whose files find their own prefix.
+if command -v pkg-config >/dev/null; then
+  PKG_CONFIG_PATH=$(dirname "$(find "$work/prefix" -name meshlode.pc)")
+  export PKG_CONFIG_PATH
+  version=$(sed -n 's/^#define MESHLODE_VERSION_[A-Z]* \([0-9]*\) .*/\1/p' "$work/prefix/include/meshlode/version.h" | paste -sd .)
+  [ "$(pkg-config --modversion meshlode)" = "$version" ] || { echo "FAILED: pkg-config has another version than $version"; exit 1; }
+  # shellcheck disable=SC2046
+  "$compiler" -std=c++20 "$consumer/use_build.cpp" -o "$work/by_pkg_config" $(pkg-config --cflags --libs meshlode-build)
+  LD_LIBRARY_PATH=$(pkg-config --variable=libdir meshlode) "$work/by_pkg_config" "$work/again.lode"
+  cmp "$work/triangle.lode" "$work/again.lode"
+fi
+
 needed() { readelf -d "$1" | sed -n 's/.*(NEEDED).*\[\(.*\)\].*/\1/p' | LC_ALL=C sort; }
 allowed='^(libc|libm|libstdc\+\+|libgcc_s|ld-linux-x86-64|libzstd|liblz4)\.so'
 if needed "$work/consumer/use_runtime" | grep -Ev "$allowed"; then

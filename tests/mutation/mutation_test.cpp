@@ -2,7 +2,7 @@
 // Can the judge fail? One field of a sound asset is changed at random, every checksum and hash is made true again, and
 // validate and verify must find it. Mutants that are as valid as the original are counted apart, by kind, with the
 // reason. The few that run always are of a hand-made asset of the qem tier; the long series is of built assets of the
-// measured tier, whose cuts verify measures too, and prints the table of docs/validation.md as it stands there.
+// measured tier, whose cuts verify measures too, and prints the table of docs/log/mutations.md as it stands there.
 #include <algorithm>
 #include <cstdio>
 #include <map>

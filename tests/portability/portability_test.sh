@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# portability_test.sh libcxx|windows CMAKE SOURCE MESHLODE READ_ASSET: base, format and run elsewhere (docs/portability.md).
+# portability_test.sh libcxx|windows CMAKE SOURCE MESHLODE READ_ASSET: base, format and run elsewhere (docs/reference/portability.md).
 #   libcxx   compiled and linked by clang with libc++, as are GoogleTest and the tests of these floors, which must pass
 #   windows  cross-compiled by mingw-w64, linked without any codec library, and run by Wine
 # In both, READ_ASSET's counterpart must print what READ_ASSET prints: hashes of what assets decode to and which cuts there are,

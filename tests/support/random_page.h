@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Pages that keep the layout of docs/format.md and mean nothing: every field is drawn, so that a codec may rely on the
-// format's rules and on nothing that real geometry would add.
+// Pages that keep the layout of docs/reference/format.md and mean nothing: every field is drawn, so that a codec may
+// rely on the format's rules and on nothing that real geometry would add.
 #pragma once
 
 #include <cstdint>

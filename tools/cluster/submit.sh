@@ -6,7 +6,7 @@
 # ARGUMENTs are those of `meshlode build`: inputs, -O, settings, --cache, --fail-if; not the files that a build writes beside its
 # assets. All state is files in FOLDER, which every node sees under this name: what was asked for, shard-I.json once shard I is
 # complete, manifest.json once all are, log/. Prints the ids: "array ID" (where shards are left to do) and "merge ID".
-# docs/cluster.md
+# docs/guides/many-machines.md
 #
 #   --retries N      times that a shard which a signal ended is started again on its node (2)
 #   --sbatch OPTION  of sbatch, for the shards; may be given again: --sbatch --cpus-per-task=8 --sbatch --mem=16G

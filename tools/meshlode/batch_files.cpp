@@ -51,7 +51,7 @@ bool is_batch_file(std::span<const std::uint8_t> bytes) {
 
 BatchFiles::BatchFiles(const std::vector<app::Job>& jobs, BatchFileNames names)
     : names_(std::move(names)), jobs_(jobs) {
-  // A shard's manifest says that the shard is complete, and appears at its end (docs/cluster.md).
+  // A shard's manifest says that the shard is complete, and appears at its end (docs/guides/many-machines.md).
   is_manifest_early_ = !names_.shard && !names_.manifest.empty() && may_be_early(names_.manifest);
   is_junit_early_ = !names_.junit.empty() && may_be_early(names_.junit);
   for (const app::Job& job : jobs) {

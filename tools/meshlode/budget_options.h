@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `--fail-if CONDITIONS` (docs/compare.md): budgets over the keys of `info`, and of `compare` over its own.
+// `--fail-if CONDITIONS` (docs/guides/budgets.md): budgets over the keys of `info`, and of `compare` over its own.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Cameras on the command line (docs/selection.md): `--camera ex,ey,ez,tx,ty,tz[,fovy_deg[,near]]`, `--ortho HEIGHT`,
+// Cameras on the command line (docs/reference/selection.md): `--camera ex,ey,ez,tx,ty,tz[,fovy_deg[,near]]`, `--ortho
+// HEIGHT`,
 // `--size WxH`, `--pixel-error t`.
 #pragma once
 

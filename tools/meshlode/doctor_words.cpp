@@ -19,7 +19,7 @@ using scene::FaultKind;
 struct Words {
   FaultKind kind;
   const char *title, *remedy;
-  const char* hard_case = "";  ///< of docs/hard-cases.md
+  const char* hard_case = "";  ///< of docs/reference/hard-cases.md
 };
 
 constexpr std::array<Words, scene::kFaultNames.size()> kWords{{

@@ -14,7 +14,7 @@ namespace meshlode::cli {
 /// Ids of all that diagnose_scene() may find, in one order.
 [[nodiscard]] std::vector<std::string> source_fault_ids();
 
-/// The case of docs/hard-cases.md that tries a fault along a parameter; empty: there is none.
+/// The case of docs/reference/hard-cases.md that tries a fault along a parameter; empty: there is none.
 [[nodiscard]] const char* hard_case_of(scene::FaultKind kind);
 
 /// What scene::examine_scene finds and what the import left out, ranked: a share of a mesh counts as much as the mesh

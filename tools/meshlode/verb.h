@@ -45,6 +45,6 @@ extern const Verb kRepackVerb;
 extern const Verb kMeasureVerb;
 extern const Verb kCompletionVerb;
 extern const Verb kManVerb;
-extern const Verb kStudyVerb;  ///< listed nowhere: for studies (docs/sweep.md)
+extern const Verb kStudyVerb;  ///< listed nowhere: for studies (docs/guides/sweep.md)
 
 }  // namespace meshlode::cli

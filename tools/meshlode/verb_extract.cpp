@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // `meshlode extract`: a cut of an asset as a GLB with the scene's nodes, names, instances, materials and textures.
 // `--error T` is a distance in mesh units, of that mesh's diagonal with --relative, in world units with --world
-// (docs/export.md); `--triangles N` is a budget; `--lods`, `--lod-ratios` and `--lod-errors` write a discrete chain.
+// (docs/guides/export.md); `--triangles N` is a budget; `--lods`, `--lod-ratios` and `--lod-errors` write a discrete
+// chain.
 #include <charconv>
 #include <cinttypes>
 #include <cstdio>

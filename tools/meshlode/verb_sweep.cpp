@@ -229,7 +229,7 @@ int run_sweep(const Verb& verb, std::span<char* const> args) {
   parser.add_value("--want", words.want,
                    "bounds and a goal, as in 'deviation<=1e-4, bytes min'; several with semicolons between them");
   parser.add_value("--knobs", words.knobs,
-                   "names of the knobs to turn, comma by comma (docs/sweep.md); not given: all");
+                   "names of the knobs to turn, comma by comma (docs/guides/sweep.md); not given: all");
   parser.add_value("--rounds", options.rounds, "how often each asset is built (3)");
   parser.add_value("--samples", words.samples,
                    "area-uniform samples of deviations, each way (100000, or fewer for a short --budget)");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Budgets as text: `totals.clusters>1000, any(meshes).stuck_groups>0` (docs/compare.md has the grammar). A condition is
-// a path into a JSON document, a relation and a value; this file knows nothing of any document.
+// Budgets as text: `totals.clusters>1000, any(meshes).stuck_groups>0` (docs/guides/budgets.md has the grammar). A
+// condition is a path into a JSON document, a relation and a value; this file knows nothing of any document.
 #pragma once
 
 #include <array>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What `meshlode compare OLD NEW` says: two assets side by side, as data, as JSON and as text. The JSON's keys are a
-// promise (docs/schemas/compare.schema.json, docs/compare.md).
+// promise (docs/schemas/compare.schema.json, docs/guides/budgets.md).
 #pragma once
 
 #include <cstdint>

@@ -29,7 +29,7 @@ constexpr double kLowShare = 1e-4;           ///< of what has no share: named la
 
 struct Words {
   const char *id, *title, *remedy;
-  const char* hard_case = "";  ///< of docs/hard-cases.md
+  const char* hard_case = "";  ///< of docs/reference/hard-cases.md
 };
 
 constexpr Words kEmpty{

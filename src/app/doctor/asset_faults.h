@@ -13,7 +13,7 @@ namespace meshlode::app {
 /// Ids of all that diagnose_asset() may find, in one order.
 [[nodiscard]] std::vector<std::string> asset_fault_ids();
 
-/// The cases of docs/hard-cases.md that these name.
+/// The cases of docs/reference/hard-cases.md that these name.
 [[nodiscard]] std::vector<std::string> asset_hard_cases();
 
 /// Not ranked. Stuck groups by reason, the few groups that hold the error, dropped and collapsed triangles, meshes of

@@ -97,7 +97,8 @@ void add_left_out(std::vector<Diagnosis>& diagnoses, std::string_view what, std:
   words.id = kLeftOutId;
   words.title = "things of the source that no asset has";
   words.remedy =
-      "where it is meant to be kept, export it in a form that is read (docs/import.md), and put missing files in place";
+      "where it is meant to be kept, export it in a form that is read (docs/reference/input.md), and put missing files "
+      "in place";
   DiagnosisPlace place;
   place.where = printable(what, 120);
   place.count = 1;
@@ -170,7 +171,7 @@ std::string doctor_text(const DoctorReport& report) {
       append_format(text, "     … and %zu more (--format json lists all)\n", diagnosis.places.size() - kMaxPlaces);
     }
     text += "     remedy: " + diagnosis.remedy + "\n";
-    if (!diagnosis.hard_case.empty()) text += "     case: docs/hard-cases.md#" + diagnosis.hard_case + "\n";
+    if (!diagnosis.hard_case.empty()) text += "     case: docs/reference/hard-cases.md#" + diagnosis.hard_case + "\n";
   }
   return text;
 }

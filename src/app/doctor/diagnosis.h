@@ -41,10 +41,11 @@ struct DiagnosisPlace {
 
 /// A fault wherever it is.
 struct Diagnosis {
-  std::string id;         ///< stable, words with hyphens
-  std::string title;      ///< what is counted, in the plural
-  std::string remedy;     ///< what to do about it
-  std::string hard_case;  ///< the case of docs/hard-cases.md that tries it along a parameter; empty: there is none
+  std::string id;      ///< stable, words with hyphens
+  std::string title;   ///< what is counted, in the plural
+  std::string remedy;  ///< what to do about it
+  std::string
+      hard_case;  ///< the case of docs/reference/hard-cases.md that tries it along a parameter; empty: there is none
   std::uint64_t count = 0;
   double share = 0.0;  ///< sum over its places, at most 1
   std::vector<DiagnosisPlace> places;

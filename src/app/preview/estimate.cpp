@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The constants are those of the models of docs/size.md and of data/, built with the default options.
+// The constants are those of the models of docs/log/size.md and of data/, built with the default options.
 #include "app/preview/estimate.h"
 
 #include <algorithm>

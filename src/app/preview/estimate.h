@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a mesh is thought to weigh in an asset before it is built: counts that are known, times bits that assets which
-// were measured take (docs/plan.md). Good to a quarter or so; `plan --measure` builds and counts.
+// were measured take (docs/reference/settings.md). Good to a quarter or so; `plan --measure` builds and counts.
 #pragma once
 
 #include <array>

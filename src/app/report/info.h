@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What `meshlode info` says about an asset: statistics over its tables, as data, as JSON, CSV, Markdown and text.
-// The JSON's keys (docs/schemas/info.schema.json) and the columns of CSV (docs/info.md) are a promise.
+// The JSON's keys (docs/schemas/info.schema.json) and the columns of CSV (docs/reference/info.md) are a promise.
 #pragma once
 
 #include <cstddef>
@@ -66,7 +66,8 @@ struct AssetInfo {
                                     BarStyle style = BarStyle::kAscii);
 /// What the text says, as tables of GitHub's Markdown. Nothing in a name is markup.
 [[nodiscard]] std::string info_markdown(const run::Asset& asset, const AssetInfo& info, bool list_stuck);
-/// One table with a head line: the levels of all meshes, or with `list_stuck` the stuck groups (docs/info.md).
+/// One table with a head line: the levels of all meshes, or with `list_stuck` the stuck groups
+/// (docs/reference/info.md).
 [[nodiscard]] std::string info_csv(const run::Asset& asset, const AssetInfo& info, bool list_stuck);
 
 [[nodiscard]] std::string section_name(std::uint32_t id);  ///< four letters, '?' for bytes that are not printable

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `info --format csv`: the columns are a promise; docs/info.md lists them.
+// `info --format csv`: the columns are a promise; docs/reference/info.md lists them.
 #include <array>
 #include <charconv>
 #include <cmath>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// meshlode.json: settings that lie beside a scene, or in a folder above it (docs/plan.md). Its text is hostile.
+// meshlode.json: settings that lie beside a scene, or in a folder above it (docs/reference/settings.md). Its text is
+// hostile.
 #pragma once
 
 #include <filesystem>

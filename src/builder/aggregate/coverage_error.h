@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The coverage error of an aggregate's groups (docs/format.md, "Aggregates"): from which pixel size on do fewer cards
-// cover as much of each pixel as the pieces that they stand for?
+// The coverage error of an aggregate's groups (docs/reference/format.md, "Aggregates"): from which pixel size on do
+// fewer cards cover as much of each pixel as the pieces that they stand for?
 //
 // A pixel's coverage is the share of its samples that something covers. What other pieces hide does not count, before
 // or after: a group is looked at in its place. The error of a group at a pixel size is the root mean square of what its

@@ -101,9 +101,23 @@ BoundedSearch::BoundedSearch(const SurfaceTree& tree, double margin, double know
 void BoundedSearch::add(const std::array<Vec3d, 3>& corners, TreeSlot place) {
   if (is_near_throughout(corners, place)) return;
   Part part;
-  for (std::size_t k = 0; k < 3; ++k) {
-    part.corner[k] = {corners[k], place};
-    if (!measure(part.corner[k])) return;
+  for (std::size_t k = 0; k < 3; ++k) part.corner[k] = {corners[k], place};
+  look_at(part);
+}
+
+void BoundedSearch::add_later(const std::array<Vec3d, 3>& corners, TreeSlot place, double bound) {
+  if (!is_beyond(bound)) return;
+  Part part;
+  for (std::size_t k = 0; k < 3; ++k) part.corner[k] = {corners[k], place};
+  part.is_new = true;
+  part.bound = bound;
+  push(part);
+}
+
+void BoundedSearch::look_at(Part& part) {
+  part.is_new = false;
+  for (Corner& corner : part.corner) {
+    if (!measure(corner)) return;
   }
   if (!is_within(part)) push(part);
 }
@@ -112,8 +126,12 @@ std::size_t BoundedSearch::run(std::size_t parts) {
   std::size_t made = 0;
   for (; !is_done() && made + 2 <= parts; made += 2) {
     std::pop_heap(parts_.begin(), parts_.end());
-    const Part part = parts_.back();
+    Part part = parts_.back();
     parts_.pop_back();
+    if (part.is_new) {
+      look_at(part);
+      continue;
+    }
     const auto [from, share] = choose_division(part);
     const std::size_t to = (from + 1) % 3;
     Corner middle{(1.0 - share) * part.corner[from].at + share * part.corner[to].at, part.corner[from].near};

@@ -34,6 +34,8 @@ class BoundedSearch {
 
   /// What of it may be beyond is divided by run().
   void add(const std::array<Vec3d, 3>& corners, TreeSlot place);
+  /// The same, but run() looks at it, if its turn comes: no point of it is farther than `bound`.
+  void add_later(const std::array<Vec3d, 3>& corners, TreeSlot place, double bound);
   /// Makes at most so many parts, and returns how many.
   std::size_t run(std::size_t parts);
   /// Nothing is left to be divided.
@@ -50,7 +52,8 @@ class BoundedSearch {
   /// Of a triangle, or all of it.
   struct Part {
     std::array<Corner, 3> corner;
-    TreeSlot near_peak;  ///< near where its bound was largest, or that of what it is a part of; invalid: not known
+    TreeSlot near_peak;   ///< near where its bound was largest, or that of what it is a part of; invalid: not known
+    bool is_new = false;  ///< of add_later(): not looked at
     std::uint8_t peak_edge = kInside;  ///< from that corner to the next: where that was; or inside
     std::uint32_t order = 0;           ///< as they were made
     double bound = std::numeric_limits<double>::infinity();  ///< no point of it is farther from the surface
@@ -70,6 +73,8 @@ class BoundedSearch {
   /// Asks for what is near to a point, and takes it where it is the farthest so far. False: nothing is.
   [[nodiscard]] bool measure(Corner& corner);
   [[nodiscard]] bool is_within(Part& part);
+  /// Pushes what of a new part may be beyond.
+  void look_at(Part& part);
   /// Where a part is divided: so far along the edge from that corner to the next.
   struct Division {
     std::size_t edge = 0;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Encode: a mesh's DAG becomes quantized channels, bit-packed clusters and GPU-ready pages (docs/format.md, Pages).
+// Encode: a mesh's DAG becomes quantized channels, bit-packed clusters and GPU-ready pages (docs/reference/format.md,
+// Pages).
 #pragma once
 
 #include <array>

@@ -18,8 +18,8 @@ namespace meshlode::builder {
 /// The direction of such a point, as long as 1: what readers get, before it is rounded to floats.
 [[nodiscard]] Vec3d octahedral_normal(const std::array<std::int32_t, 3>& point);
 
-/// The two stored values, each 0 … 2 · scale, of a point in one of the six charts (docs/format.md, Normals). Where the
-/// unfolding has two spellings, the non-negative side is taken.
+/// The two stored values, each 0 … 2 · scale, of a point in one of the six charts (docs/reference/format.md, Normals).
+/// Where the unfolding has two spellings, the non-negative side is taken.
 [[nodiscard]] std::array<std::int32_t, 2> chart_coordinates(const std::array<std::int32_t, 3>& point,
                                                             std::uint32_t chart, std::int32_t scale);
 

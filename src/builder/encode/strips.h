@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The triangles of a cluster as generalised strips (docs/format.md, Strips).
+// The triangles of a cluster as generalised strips (docs/reference/format.md, Strips).
 #pragma once
 
 #include <array>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The margins with which stored bounds nest, and the roundings that keep them (I4). They are a little larger than what
-// the selection rule needs (run/read/nesting.h; docs/selection.md has the proof), so that a judge with other rounding
-// of its own agrees. u = 2^-24.
+// the selection rule needs (run/read/nesting.h; docs/reference/selection.md has the proof), so that a judge with other
+// rounding of its own agrees. u = 2^-24.
 #pragma once
 
 #include <cmath>

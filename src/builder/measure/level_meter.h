@@ -16,6 +16,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <tuple>
 #include <vector>
@@ -77,7 +78,7 @@ class LevelMeter {
     std::vector<std::uint32_t> first_near;  ///< per unit: into near; kNoId: all of it is near to one triangle
     std::vector<std::uint32_t> near_all;    ///< per unit: to this one
     std::vector<NearVertex> near;
-    std::vector<Raise> raised;
+    std::vector<Raise> raised;  ///< one of each group
     std::vector<Moved> moved;
   };
   /// A cluster that a group made.
@@ -116,14 +117,18 @@ class LevelMeter {
   // moved.cpp
   void list_moved(const LevelSurface& surface, const OwnedUnit& unit, const NearVertex* near, std::uint32_t near_all,
                   UnitChunk& chunk) const;
-  void measure_moved(const LevelSurface& surface, std::span<Moved> moved) const;
+  [[nodiscard]] double distance_from(const SurfaceTree& tree, const Moved& m, double enough, bool is_all) const;
+  void measure_from_own(const LevelSurface& surface, std::span<Moved> moved) const;
+  void measure_from_both(const LevelSurface& surface, std::span<Moved> moved) const;
   void measure_all_moved(const LevelSurface& surface, std::span<Moved> moved) const;
   void raise_by(std::span<const Moved> moved);
-  void wait_for_others(const LevelSurface& surface, std::span<const UnitChunk> chunks);
+  void wait_for_others(const LevelSurface& surface, std::span<UnitChunk> chunks);
 
   [[nodiscard]] bool is_of_level(std::uint32_t group) const { return group >= first_ && group < end_; }
   [[nodiscard]] Known& known(std::uint32_t group) { return known_[group - first_]; }
   [[nodiscard]] const Known& known(std::uint32_t group) const { return known_[group - first_]; }
+  /// What is no farther does not raise a group's error.
+  [[nodiscard]] double enough(std::uint32_t group) const { return dag_.groups[group].error / margin_; }
   /// The group that made a triangle of the surface; invalid for level 0.
   [[nodiscard]] GroupId maker(const LevelSurface& surface, std::uint32_t triangle) const {
     return dag_.clusters[surface.cluster[triangle]].own_group;
@@ -148,33 +153,54 @@ class LevelMeter {
   std::vector<std::atomic<std::uint8_t>> seen_;  ///< per triangle of the surface: flags
 };
 
-/// Groups that a point of a unit may belong to, and what is known of them.
+/// Groups that a point of a unit may belong to, and what is known of them: before, and by what a chunk raised.
 class LevelMeter::Owners {
  public:
-  Owners(const LevelMeter& meter, const OwnedUnit& unit)
-      : meter_(meter), groups_(std::span(meter.owners_).subspan(unit.first_owner, unit.owner_count)) {}
+  Owners(const LevelMeter& meter, const OwnedUnit& unit, std::vector<Raise>& raised)
+      : meter_(meter),
+        groups_(std::span(meter.owners_).subspan(unit.first_owner, unit.owner_count)),
+        raised_(raised),
+        known_(least_known()) {}
 
   [[nodiscard]] bool is_one() const { return groups_.size() == 1; }
-  /// What all of them are known to be off by. `of_one`: of the one there is, as its turn knows it.
-  [[nodiscard]] double known(double of_one) const {
-    if (is_one()) return of_one;
-    double least = meter_.known(groups_.front()).known;
-    for (const std::uint32_t g : groups_) least = std::min(least, meter_.known(g).known);
-    return least;
-  }
-  /// A point is farther than that: which of them made what is nearest to it answers, else all.
-  void raise(const LevelSurface& surface, double distance, std::uint32_t nearest, std::vector<Raise>& raised) const {
+  /// What all of them are known to be off by.
+  [[nodiscard]] double known() const { return known_; }
+  /// A point is so far: if that is farther than what is known, which of them made what is nearest to it answers, else
+  /// all.
+  void raise(const LevelSurface& surface, double distance, std::uint32_t nearest) {
+    if (!(distance > known_)) return;
     const GroupId made = meter_.maker(surface, nearest);
-    if (made.is_valid() && std::find(groups_.begin(), groups_.end(), made.value) != groups_.end()) {
-      raised.push_back({made.value, distance});
-      return;
+    const bool is_its = made.is_valid() && std::find(groups_.begin(), groups_.end(), made.value) != groups_.end();
+    for (const std::uint32_t g : groups_) {
+      if (is_its && g != made.value) continue;
+      const auto raise = find(g);
+      if (raise == raised_.end()) {
+        raised_.push_back({g, distance});
+      } else {
+        raise->distance = std::max(raise->distance, distance);
+      }
     }
-    for (const std::uint32_t g : groups_) raised.push_back({g, distance});
+    known_ = least_known();
   }
 
  private:
+  [[nodiscard]] std::vector<Raise>::iterator find(std::uint32_t group) const {
+    return std::find_if(raised_.begin(), raised_.end(), [group](const Raise& raise) { return raise.group == group; });
+  }
+  [[nodiscard]] double least_known() const {
+    double least = std::numeric_limits<double>::infinity();
+    for (const std::uint32_t g : groups_) {
+      const auto raise = find(g);
+      const double known = meter_.known(g).known;
+      least = std::min(least, raise == raised_.end() ? known : std::max(known, raise->distance));
+    }
+    return least;
+  }
+
   const LevelMeter& meter_;
   std::span<const std::uint32_t> groups_;
+  std::vector<Raise>& raised_;
+  double known_;
 };
 
 /// What a triangle of the surface is known to have over it: source that is about parallel, and source that is not, or
@@ -187,8 +213,10 @@ constexpr double kTolerance = 1.002;
 /// Parts that searches may make: for each triangle that needs one, and spread over all of a level. With four and fifty
 /// times as many no error of the dragon grows by more than 2%.
 constexpr std::size_t kPartsPerTriangle = 16, kPartsOfLevel = 4000;
-/// The same of a source of at most kFewSource triangles, where one of a coarse level may lie over hundreds of them.
-constexpr std::size_t kPartsOfFew = 32;
+/// The same for each triangle of the source, spread over what a level made: one triangle of a coarse level may lie over
+/// a hundred steps of a staircase. With 1 the last cut of a sheared plane, 50,000 of its sizes away from the origin,
+/// so that floats make it stairs, is at 1.11 of its error; with 4, 1.00.
+constexpr std::size_t kPartsPerSource = 4;
 /// A source of at most so many triangles costs little, and is looked at without shortcuts.
 constexpr std::size_t kFewSource = 30000;
 

@@ -12,11 +12,12 @@
 namespace meshlode::builder {
 
 /// A search finds a maximum from below. In the tier kMeasured an error is the deviation that it found times this.
-/// Chosen on one set of scenes and reported on another: docs/quality.md, "How true the stored errors are".
+/// Chosen on one set of scenes and reported on another: docs/log/quality.md, "How true the stored errors are".
 constexpr double kMeasuredMargin = 1.02;
 
 /// Sets error, deviation, normal_deviation and uv_deviation of the groups that are not terminal, in object units,
-/// degrees and UV units; errors never fall from fine to coarse (I4). Where errors come from (I7, docs/architecture.md):
+/// degrees and UV units; errors never fall from fine to coarse (I4). Where errors come from (I7,
+/// docs/reference/invariants.md):
 ///   kQem        the simplifier's own estimate, as the file stores it
 ///   kMeasured   the largest distance that was met between each level's whole surface and the source (measure_levels.h)
 ///   kCertified  an upper bound of the deviation

@@ -2,8 +2,11 @@
 // A cut may have what one group made beside what another one of the level replaces, where that one's error is larger.
 // What the first stood for, and is near to what the second made, has to be near to this cut as well.
 #include <limits>
+#include <queue>
+#include <utility>
 
 #include "base/parallel.h"
+#include "base/release.h"
 #include "builder/deviation/bounded_search.h"
 #include "builder/measure/level_meter.h"
 
@@ -42,67 +45,86 @@ void LevelMeter::list_moved(const LevelSurface& surface, const OwnedUnit& unit, 
   }
 }
 
-/// Of one group: how far they are from what it made, and, where that is too far, from that and what the other group
-/// replaced together.
-void LevelMeter::measure_moved(const LevelSurface& surface, std::span<Moved> moved) const {
-  const std::uint32_t g = moved.front().group;
-  const double enough = dag_.groups[g].error / margin_;
-  const auto measure = [&](const SurfaceTree& tree, Moved& m) {
-    if (tree.size() == 0) {
-      m.distance = std::numeric_limits<double>::infinity();
-    } else if (m.is_triangle) {
-      BoundedSearch search(tree, kTolerance, enough);
-      search.add(source_.impl().corners(m.id), TreeSlot());
-      (void)search.run(kPartsOfMoved);
-      m.distance = search.found().distance;
-    } else {
-      const Vec3d& point = source_.impl().positions[m.id];
-      m.distance = distance_at(tree, point, find_near(tree, point, TreeSlot(), enough).slot);
-    }
-  };
-  const std::uint32_t first = surface.start[g - first_], end = surface.start[g - first_ + 1];
+/// How far something moved is from a tree; 0: not farther than `enough`. Of triangles that are, some distance beyond
+/// will do, unless all is to be known.
+double LevelMeter::distance_from(const SurfaceTree& tree, const Moved& m, double enough, bool is_all) const {
+  if (tree.size() == 0) return std::numeric_limits<double>::infinity();
+  if (!m.is_triangle) {
+    const Vec3d& point = source_.impl().positions[m.id];
+    const double distance = distance_at(tree, point, find_near(tree, point, TreeSlot(), enough).slot);
+    return distance > enough ? distance : 0.0;
+  }
+  BoundedSearch search(tree, kTolerance, enough);
+  search.add(source_.impl().corners(m.id), TreeSlot());
+  for (std::size_t parts = 0; parts < kPartsOfMoved && !search.is_done(); parts += search.run(2)) {
+    if (!is_all && search.found().distance > 0.0) break;
+  }
+  return search.found().distance;
+}
+
+/// Of one group: how far they are from what it made.
+void LevelMeter::measure_from_own(const LevelSurface& surface, std::span<Moved> moved) const {
+  const std::uint32_t g = moved.front().group, first = surface.start[g - first_], end = surface.start[g - first_ + 1];
   SurfaceTree own;
   own.build({surface.positions, std::span(surface.triangles).subspan(first, end - first)});
-  std::vector<std::uint32_t> others;
-  for (Moved& m : moved) {
-    measure(own, m);
-    if (m.distance > enough) others.push_back(m.to);
+  for (Moved& m : moved) m.distance = distance_from(own, m, enough(g), false);
+}
+
+/// To one other group, those that are too far from what their own made: how far they are from that and what the other
+/// replaced together. No tree of both is made where each is near to the one or the other.
+void LevelMeter::measure_from_both(const LevelSurface& surface, std::span<Moved> moved) const {
+  std::vector<Vec3d> positions;
+  std::vector<LinkedSurface::Triangle> triangles;
+  const DagGroup& to = dag_.groups[moved.front().to];
+  for (std::uint32_t c = to.first_cluster; c < to.first_cluster + to.cluster_count; ++c) {
+    const DagCluster& cluster = dag_.clusters[c];
+    const auto base = static_cast<std::uint32_t>(positions.size());
+    for (std::uint32_t v = cluster.first_vertex; v < cluster.first_vertex + cluster.vertex_count; ++v) {
+      positions.push_back(mesh_.grid.decode(dag_.vertex_position[v]));
+    }
+    for (std::uint32_t t = cluster.first_triangle; t < cluster.first_triangle + cluster.triangle_count; ++t) {
+      const auto& local = dag_.triangles[t];
+      triangles.push_back({base + local[0], base + local[1], base + local[2]});
+    }
   }
-  std::sort(others.begin(), others.end());
-  others.erase(std::unique(others.begin(), others.end()), others.end());
-  for (const std::uint32_t other : others) {
-    std::vector<Vec3d> positions;
-    std::vector<std::array<std::uint32_t, 3>> triangles;
-    const auto add = [&](const TriangleCorners& corners) {
+  const std::size_t position_count = positions.size(), triangle_count = triangles.size();
+  SurfaceTree tree;
+  tree.build({positions, triangles});
+  std::vector<Moved*> open;
+  for (Moved& m : moved) {
+    m.distance = std::min(m.distance, distance_from(tree, m, enough(m.group), false));
+    if (m.distance > 0.0 && m.is_triangle) open.push_back(&m);
+  }
+  for (std::size_t i = 0; i < open.size();) {
+    const std::uint32_t g = open[i]->group;
+    positions.resize(position_count);
+    triangles.resize(triangle_count);
+    for (std::uint32_t k = surface.start[g - first_]; k < surface.start[g - first_ + 1]; ++k) {
       const auto base = static_cast<std::uint32_t>(positions.size());
+      const TriangleCorners corners = surface.corners(k);
       positions.insert(positions.end(), corners.begin(), corners.end());
       triangles.push_back({base, base + 1, base + 2});
-    };
-    for (std::uint32_t k = first; k < end; ++k) add(surface.corners(k));
-    const DagGroup& group = dag_.groups[other];
-    for (std::uint32_t c = group.first_cluster; c < group.first_cluster + group.cluster_count; ++c) {
-      const DagCluster& cluster = dag_.clusters[c];
-      for (std::uint32_t t = cluster.first_triangle; t < cluster.first_triangle + cluster.triangle_count; ++t) {
-        TriangleCorners corners;
-        for (std::size_t k = 0; k < 3; ++k) {
-          corners[k] = mesh_.grid.decode(dag_.vertex_position[cluster.first_vertex + dag_.triangles[t][k]]);
-        }
-        add(corners);
-      }
     }
-    SurfaceTree both;
-    both.build({positions, triangles});
-    for (Moved& m : moved) {
-      if (m.to == other && m.distance > enough) measure(both, m);
+    tree = {};
+    tree.build({positions, triangles});
+    for (double most = enough(g); i < open.size() && open[i]->group == g; ++i) {
+      open[i]->distance = distance_from(tree, *open[i], most, true);
+      most = std::max(most, open[i]->distance);
     }
   }
 }
 
 /// A group's error is what keeps such a cut true; at most the other group's, so that there is no such cut. What is
 /// raised may come to be larger than that of others that it was smaller than: so again, until nothing is.
-void LevelMeter::wait_for_others(const LevelSurface& surface, std::span<const UnitChunk> chunks) {
+void LevelMeter::wait_for_others(const LevelSurface& surface, std::span<UnitChunk> chunks) {
   std::vector<Moved> moved;
-  for (const UnitChunk& chunk : chunks) moved.insert(moved.end(), chunk.moved.begin(), chunk.moved.end());
+  std::size_t count = 0;
+  for (const UnitChunk& chunk : chunks) count += chunk.moved.size();
+  moved.reserve(count);
+  for (UnitChunk& chunk : chunks) {
+    moved.insert(moved.end(), chunk.moved.begin(), chunk.moved.end());
+    release(chunk.moved);
+  }
   std::sort(moved.begin(), moved.end());
   const auto is_same = [](const Moved& a, const Moved& b) { return !(a < b); };
   moved.erase(std::unique(moved.begin(), moved.end(), is_same), moved.end());
@@ -116,27 +138,39 @@ void LevelMeter::wait_for_others(const LevelSurface& surface, std::span<const Un
   }
 }
 
-/// Those of each group side by side; they are in the order of groups.
 void LevelMeter::measure_all_moved(const LevelSurface& surface, std::span<Moved> moved) const {
-  std::vector<std::size_t> start;
-  for (std::size_t i = 0; i < moved.size(); ++i) {
-    if (i == 0 || moved[i].group != moved[i - 1].group) start.push_back(i);
-  }
-  start.push_back(moved.size());
-  parallel_for_each_index(start.size() - 1, 1, [&](std::size_t i) {
-    measure_moved(surface, moved.subspan(start[i], start[i + 1] - start[i]));
-  });
+  const auto for_each_run = [](std::span<Moved> all, std::uint32_t Moved::*key, const auto& turn) {
+    std::vector<std::size_t> start;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      if (i == 0 || all[i].*key != all[i - 1].*key) start.push_back(i);
+    }
+    start.push_back(all.size());
+    parallel_for_each_index(start.size() - 1, 1,
+                            [&](std::size_t i) { turn(all.subspan(start[i], start[i + 1] - start[i])); });
+  };
+  for_each_run(moved, &Moved::group, [&](std::span<Moved> of_one) { measure_from_own(surface, of_one); });
+  const auto far = std::stable_partition(moved.begin(), moved.end(), [](const Moved& m) { return m.distance == 0.0; });
+  std::stable_sort(far, moved.end(), [](const Moved& a, const Moved& b) { return a.to < b.to; });
+  for_each_run(std::span(far, moved.end()), &Moved::to,
+               [&](std::span<Moved> to_one) { measure_from_both(surface, to_one); });
 }
 
+/// From the largest error down: what a group's error is when its turn comes is not raised any more.
 void LevelMeter::raise_by(std::span<const Moved> moved) {
-  for (bool is_changed = true; is_changed;) {
-    is_changed = false;
-    for (const Moved& m : moved) {
-      double& error = dag_.groups[m.group].error;
-      const double least = std::min(margin_ * m.distance, dag_.groups[m.to].error);
+  std::vector<std::vector<const Moved*>> moved_to(end_ - first_);
+  for (const Moved& m : moved) moved_to[m.to - first_].push_back(&m);
+  std::priority_queue<std::pair<double, std::uint32_t>> open;
+  for (std::uint32_t g = first_; g < end_; ++g) open.emplace(dag_.groups[g].error, g);
+  for (; !open.empty();) {
+    const auto [limit, to] = open.top();
+    open.pop();
+    if (limit < dag_.groups[to].error) continue;  // it had its turn
+    for (const Moved* m : moved_to[to - first_]) {
+      double& error = dag_.groups[m->group].error;
+      const double least = std::min(margin_ * m->distance, limit);
       if (!(least > error)) continue;
       error = least;
-      is_changed = true;
+      open.emplace(error, m->group);
     }
   }
 }

@@ -7,9 +7,10 @@ namespace meshlode::builder {
 
 namespace {
 
-/// A triangle is looked at closely where a few of its points are so far, as a share of what is known. No error of the
-/// dragon is more than 2% below what looking at all of them finds.
-constexpr double kPromise = 0.6;
+/// A triangle is looked at closely where a few of its points are so far, as a share of what is known. With 0.6 a
+/// thousand loose pieces have a cut at 1.075 of its error, with 0.4 at 1.013, with 0.3 none above 1; looking at all of
+/// them costs the dragon 2.7 times the time.
+constexpr double kPromise = 0.4;
 /// One that lies over more source triangles is left to a search in bounds, which costs more: with 64, staircases of
 /// 17,000 triangles had cuts at 1.06 and 1.10 times what they stored.
 constexpr std::size_t kMostPieces = 1024;
@@ -86,9 +87,10 @@ void LevelMeter::check_made(const LevelSurface& surface, Made& made, std::size_t
     for (const Overlay::Far& far : overlay.far()) raise(far.distance);
     if (overlay.rest().empty()) continue;
     ++searched;
-    for (const Overlay::Rest& rest : overlay.rest()) search.add(rest.corners, impl.place_of(rest.near));
+    for (const Overlay::Rest& rest : overlay.rest())
+      search.add_later(rest.corners, impl.place_of(rest.near), rest.bound);
   }
-  (void)search.run((is_small ? kPartsOfFew : kPartsPerTriangle) * searched + extra_parts);
+  (void)search.run(kPartsPerTriangle * searched + extra_parts);
   raise(search.found().distance);
 }
 

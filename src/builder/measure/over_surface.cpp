@@ -17,8 +17,10 @@ constexpr double kFlat = 0.4;
 constexpr float kFlatCosine = 0.9F;
 /// A source triangle that lies over more of the surface is left to a search in bounds.
 constexpr std::size_t kMostPieces = 48;
-/// Parts of the search for a triangle of several groups.
+/// Parts of the search for a triangle of several groups, where those before it in its chunk left so many.
 constexpr std::size_t kPartsOfShared = 256;
+/// Parts of one chunk: stacks of sheets have thousands of triangles that lie over many others.
+constexpr std::size_t kMostPartsOfChunk = 4096;
 
 float longest_edge(const TriangleCorners& corners) {
   const auto [a, b, c] = corners;
@@ -33,14 +35,12 @@ void LevelMeter::ask_units(const LevelSurface& surface, UnitChunk& chunk) const 
   if (tree.size() == 0) return;
   const std::span<const Vec3d> positions = source_.impl().positions;
   TreeSlot place;
-  double of_group = known(chunk.group).known;
   chunk.first_near.assign(chunk.units.size(), kNoId);
   chunk.near_all.assign(chunk.units.size(), 0);
   for (std::size_t i = 0; i < chunk.units.size(); ++i) {
     const SourceUnits::Unit& unit = units_.units()[chunk.units[i].unit];
-    const Owners owners(*this, chunk.units[i]);
-    double within = owners.known(of_group);
-    if (unit.radius < within) {
+    Owners owners(*this, chunk.units[i], chunk.raised);
+    if (const double within = owners.known(); unit.radius < within) {
       place = find_near(tree, unit.center, place, within - unit.radius).slot;
       if (place.is_valid() && distance_at(tree, unit.center, place) + unit.radius <= within) {
         chunk.near_all[i] = tree.triangle_at(place);
@@ -50,14 +50,14 @@ void LevelMeter::ask_units(const LevelSurface& surface, UnitChunk& chunk) const 
     }
     chunk.first_near[i] = static_cast<std::uint32_t>(chunk.near.size());
     for (const std::uint32_t v : units_.vertices(unit)) {
+      const double within = owners.known();
       const SurfaceTree::Hit hit = find_near(tree, positions[v], place, kNearEnough * within);
       if (hit.slot.is_valid()) place = hit.slot;
       if (!place.is_valid()) place = TreeSlot(0U);  // farther than floats reach: not on any real mesh
       double distance = std::sqrt(static_cast<double>(hit.distance2)) / tree.scale();
       if (distance > 0.99 * within) {  // as floats say
         distance = distance_at(tree, positions[v], place);
-        if (distance > within) owners.raise(surface, distance, tree.triangle_at(place), chunk.raised);
-        if (owners.is_one()) of_group = within = std::max(within, distance);
+        owners.raise(surface, distance, tree.triangle_at(place));
       }
       chunk.near.push_back({tree.triangle_at(place), static_cast<float>(distance)});
     }
@@ -107,25 +107,19 @@ void LevelMeter::check_units(const LevelSurface& surface, UnitChunk& chunk, std:
   const bool is_small = source.triangles.size() <= kFewSource;
   const LinkedSurface linked = surface.linked();
   Overlay overlay(linked, kMostPieces);
-  double of_group = known(chunk.group).known;
-  BoundedSearch search(surface.tree, kTolerance, of_group);
-  std::size_t searched = 0;
+  BoundedSearch search(surface.tree, kTolerance, known(chunk.group).known);
+  std::size_t searched = 0, left_to_shared = kPartsOfShared;
   for (std::size_t i = 0; i < chunk.first_near.size(); ++i) {
     if (chunk.first_near[i] == kNoId) continue;
     const SourceUnits::Unit& unit = units_.units()[chunk.units[i].unit];
     const NearVertex* near = chunk.near.data() + chunk.first_near[i];
-    const Owners owners(*this, chunk.units[i]);
-    double within = owners.known(of_group);
-    const auto raise = [&](double distance, std::uint32_t nearest) {
-      if (distance <= within) return;
-      owners.raise(surface, distance, nearest, chunk.raised);
-      if (owners.is_one()) of_group = within = distance;
-    };
+    Owners owners(*this, chunk.units[i], chunk.raised);
     for (const SourceUnits::Triangle& t : units_.triangles(unit)) {
       const std::array<NearVertex, 3> n{near[t.corner[0]], near[t.corner[1]], near[t.corner[2]]};
       const std::array<std::uint32_t, 3> k{n[0].triangle, n[1].triangle, n[2].triangle};
       const TriangleCorners corners = source.corners(t.id);
       const Vec3f normal = unit_normal(corners);
+      const double within = owners.known();
       bool is_at_border = false;
       for (std::size_t j = 0; j < 3; ++j) {
         const bool is_border = units_.is_border(units_.vertices(unit)[t.corner[j]]);
@@ -146,26 +140,30 @@ void LevelMeter::check_units(const LevelSurface& surface, UnitChunk& chunk, std:
       }
       if (is_within) continue;
       for (const Overlay::Far& far : overlay.far()) {
-        raise(far.distance, far.nearest);
+        owners.raise(surface, far.distance, far.nearest);
         // Seen from the triangle below, the source may be farther.
         if (!maker(surface, far.below).is_valid() || !is_of_level(maker(surface, far.below).value)) continue;
         const Vec3d foot = nearest_point(far.at, surface.corners(far.below));
-        const TreeSlot back = find_near(source.tree, foot, source.place_of(t.id), within).slot;
-        raise(distance_at(source.tree, foot, back), far.below);
+        const TreeSlot back = find_near(source.tree, foot, source.place_of(t.id), owners.known()).slot;
+        owners.raise(surface, distance_at(source.tree, foot, back), far.below);
       }
       if (owners.is_one()) {
         ++searched;
-        for (const Overlay::Rest& rest : overlay.rest()) search.add(rest.corners, surface.slot[rest.near]);
+        for (const Overlay::Rest& rest : overlay.rest())
+          search.add_later(rest.corners, surface.slot[rest.near], rest.bound);
         continue;
       }
-      BoundedSearch shared(surface.tree, kTolerance, within);
-      for (const Overlay::Rest& rest : overlay.rest()) shared.add(rest.corners, surface.slot[rest.near]);
-      (void)shared.run(kPartsOfShared);
-      if (shared.found().distance > 0.0) raise(shared.found().distance, surface.tree.triangle_at(shared.found().place));
+      BoundedSearch shared(surface.tree, kTolerance, owners.known());
+      for (const Overlay::Rest& rest : overlay.rest())
+        shared.add_later(rest.corners, surface.slot[rest.near], rest.bound);
+      left_to_shared = std::min(left_to_shared + kPartsPerTriangle, kPartsOfShared);
+      left_to_shared -= shared.run(left_to_shared);
+      const BoundedSearch::Found& found = shared.found();
+      if (found.distance > 0.0) owners.raise(surface, found.distance, surface.tree.triangle_at(found.place));
     }
   }
-  (void)search.run(kPartsPerTriangle * searched + extra_parts);
-  if (search.found().distance > of_group) chunk.raised.push_back({chunk.group, search.found().distance});
+  (void)search.run(std::min(kPartsPerTriangle * searched + extra_parts, kMostPartsOfChunk));
+  if (search.found().distance > 0.0) chunk.raised.push_back({chunk.group, search.found().distance});
 }
 
 }  // namespace meshlode::builder

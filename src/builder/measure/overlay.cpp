@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace meshlode::builder {
 
@@ -19,7 +20,7 @@ bool Overlay::is_within(const TriangleCorners& corners, std::uint32_t start, dou
   all.entered = 3;
   for (std::size_t pieces = 0; size_ > 0; ++pieces) {
     if (pieces == most_pieces_) {
-      rest_.assign(1, {corners, start});
+      rest_.assign(1, {corners, start, std::numeric_limits<double>::infinity()});
       break;
     }
     const std::size_t top = size_ - 1;
@@ -95,32 +96,40 @@ void Overlay::cut(std::size_t index) {
   }
 }
 
-/// By its corners all of a piece is near to the triangle below; or another one is nearer, or it is far.
+/// By its corners all of a piece is near to the triangle below, or to what is nearest to one of them; or it is left.
 void Overlay::check(const Piece& piece) {
-  if (piece.polygon.count == 0) return;
+  const Polygon& p = piece.polygon;
+  if (p.count == 0) return;
   below_.push_back(piece.triangle);
+  const auto squared_bound = [&p](const TriangleDistance& distance) {
+    double most2 = 0.0;
+    for (std::uint32_t i = 0; i < p.count; ++i) most2 = std::max(most2, distance.squared_to(p.corner[i]));
+    return most2;
+  };
   const TriangleDistance below(surface_.corners(piece.triangle));
-  bool is_within = true;
-  for (std::uint32_t i = 0; i < piece.polygon.count; ++i) {
-    const Vec3d& x = piece.polygon.corner[i];
+  double bound2 = squared_bound(below);
+  if (bound2 <= known_ * known_) return;
+  for (std::uint32_t i = 0; i < p.count; ++i) {
+    const Vec3d& x = p.corner[i];
     if (below.squared_to(x) <= known_ * known_) continue;
-    is_within = false;
     const SurfaceTree& tree = surface_.tree;
     const Vec3f at = tree.to_frame(x);
     const float enough = tree.squared_in_frame(known_);
     SurfaceTree::Hit hit = tree.look_around(at, surface_.slot[piece.triangle], {});
     if (!(hit.distance2 <= enough)) hit = tree.find_nearest(at, hit, enough);
+    const std::uint32_t nearest = tree.triangle_at(hit.slot);
     const double distance = std::sqrt(tree.distance2_at(x, hit.slot));
-    far_.push_back({x, piece.triangle, tree.triangle_at(hit.slot), distance > known_ ? distance : 0.0});
+    far_.push_back({x, piece.triangle, nearest, distance > known_ ? distance : 0.0});
     known_ = std::max(known_, distance);
+    bound2 = std::min(bound2, squared_bound(TriangleDistance(surface_.corners(nearest))));
   }
-  if (!is_within) leave(piece);
+  if (bound2 > known_ * known_) leave(piece, std::sqrt(bound2));
 }
 
-void Overlay::leave(const Piece& piece) {
+void Overlay::leave(const Piece& piece, double bound) {
   const Polygon& p = piece.polygon;
   for (std::uint32_t i = 1; i + 1 < p.count; ++i) {
-    rest_.push_back({{p.corner[0], p.corner[i], p.corner[i + 1]}, piece.triangle});
+    rest_.push_back({{p.corner[0], p.corner[i], p.corner[i + 1]}, piece.triangle, bound});
   }
 }
 

@@ -103,6 +103,7 @@ class Overlay {
   struct Rest {
     TriangleCorners corners;
     std::uint32_t near = 0;
+    double bound = 0.0;  ///< no point of it is farther
   };
   [[nodiscard]] std::span<const Rest> rest() const { return rest_; }
 
@@ -121,7 +122,7 @@ class Overlay {
   void cut(std::size_t piece);
   Piece& push();
   void check(const Piece& piece);
-  void leave(const Piece& piece);
+  void leave(const Piece& piece, double bound);
 
   const LinkedSurface& surface_;
   std::size_t most_pieces_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tables and texts of a file as columns in prefix codes (docs/format.md, Stored sections).
+// Tables and texts of a file as columns in prefix codes (docs/reference/format.md, Stored sections).
 #pragma once
 
 #include <cstdint>

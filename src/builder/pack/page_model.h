@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A decoded page as small numbers: the inside of the stored form before any code (docs/format.md, Stored pages).
+// A decoded page as small numbers: the inside of the stored form before any code (docs/reference/format.md, Stored
+// pages).
 #pragma once
 
 #include <array>

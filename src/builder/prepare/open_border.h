@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The open border of a source mesh, for builds that lock it: docs/format.md, "The open border", defines it. Tiles that
-// are built apart share the vertices of theirs, so these are found by exact position, over all primitives: what the
-// grid does to a tile's other triangles changes nothing.
+// The open border of a source mesh, for builds that lock it: docs/reference/format.md, "The open border", defines it.
+// Tiles that are built apart share the vertices of theirs, so these are found by exact position, over all primitives:
+// what the grid does to a tile's other triangles changes nothing.
 #pragma once
 
 #include <cstdint>

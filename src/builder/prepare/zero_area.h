@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the source is: the points of its triangles that have area (docs/format.md, "The source"). A triangle whose
-// corners lie on one line draws nothing. Where it lies along edges of triangles with area it closes a T-junction and
-// adds no point: it stays, or the surface would be open there (I6). Any other one is no part of the source.
+// What the source is: the points of its triangles that have area (docs/reference/format.md, "The source"). A triangle
+// whose corners lie on one line draws nothing. Where it lies along edges of triangles with area it closes a T-junction
+// and adds no point: it stays, or the surface would be open there (I6). Any other one is no part of the source.
 #pragma once
 
 #include <cstdint>

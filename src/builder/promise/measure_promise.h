@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How far a group is from the source in what is painted on it: the two-sided distance in the product space of
-// positions, texture coordinates and normals (docs/selection.md, "What is promised"), quantization included.
+// positions, texture coordinates and normals (docs/reference/selection.md, "What is promised"), quantization included.
 //
 // Points of a group are held against all of the source. Points of the source are carried through the finished DAG: each
 // lies on a cluster of level 0, and where a group replaces that, on the nearest of the clusters made from it. One

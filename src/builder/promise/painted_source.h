@@ -31,7 +31,8 @@ struct PaintedSource {
 /// U and V of each stored UV set, object units of a UV unit; 0 0: it is no part.
 using UvUnits = std::array<std::array<double, 2>, scene::kMaxUvSets>;
 
-/// `extents`: of each of the scene's materials; 0 0 where no texture of it samples a set. Units (docs/selection.md):
+/// `extents`: of each of the scene's materials; 0 0 where no texture of it samples a set. Units
+/// (docs/reference/selection.md):
 ///   U = s · W, V = s · H with the largest extents of the mesh's materials, s = √(area of the surface that samples the
 ///       set / the texels that it samples)
 /// A set that nothing samples, or that covers no texel, is no part. Of the source as it came: about an origin, what is

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The product space of positions, texture coordinates and normals (docs/selection.md, "What is promised"): a point of a
-// surface has up to fourteen coordinates, all lengths, and a triangle is flat there too, since each of them is linear
-// between its corners. So the nearest point of a triangle is what it is in three dimensions (Ericson 2004, 5.1.5, which
-// needs dot products alone).
+// The product space of positions, texture coordinates and normals (docs/reference/selection.md, "What is promised"): a
+// point of a surface has up to fourteen coordinates, all lengths, and a triangle is flat there too, since each of them
+// is linear between its corners. So the nearest point of a triangle is what it is in three dimensions (Ericson
+// 2004, 5.1.5, which needs dot products alone).
 #pragma once
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Surfaces in the product space of positions, texture coordinates and normals (docs/selection.md, "What is promised"):
-// the source as it is painted, and clusters as they will be decoded.
+// Surfaces in the product space of positions, texture coordinates and normals (docs/reference/selection.md, "What is
+// promised"): the source as it is painted, and clusters as they will be decoded.
 #pragma once
 
 #include <algorithm>

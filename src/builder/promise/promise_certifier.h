@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The certified tier for what is promised (docs/selection.md, "What is promised"): the induction of
+// The certified tier for what is promised (docs/reference/selection.md, "What is promised"): the induction of
 // deviation/certify.cpp over the finished DAG, in the product space, where triangles are as flat as in three
 // dimensions. Level 0 is covered by the source and the source by level 0; then each group hands on what is proven of
 // the triangles of its members to the triangles that were made of them.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// When the border of a simplified group counts as the one it had (I6): docs/validation.md, "The border proof", says
-// what and why. The judge has code of its own for the same definition; this is the builder's, so that nothing is
+// When the border of a simplified group counts as the one it had (I6): docs/explanation/border-proof.md,
+// says what and why. The judge has code of its own for the same definition; this is the builder's, so that nothing is
 // written that the judge would refuse.
 #pragma once
 

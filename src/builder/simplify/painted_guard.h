@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How far a collapse moves what is painted, as far as that is promised: the largest distance of the old surface from
 // the new and of the new from the old in the product space of positions, texture coordinates and normals
-// (docs/selection.md, "What is promised"). Quadrics of attributes are means: a collapse that smears a small chart, or
-// turns one corner's normal, hides in them, and the group's error is the largest.
+// (docs/reference/selection.md, "What is promised"). Quadrics of attributes are means: a collapse that smears a small
+// chart, or turns one corner's normal, hides in them, and the group's error is the largest.
 #pragma once
 
 #include <algorithm>

@@ -87,7 +87,7 @@ struct SimplifyResult {
   std::uint64_t crowded = 0;
 };
 
-/// The result has the input's border (I6, docs/validation.md): edge by edge where both ends are locked, simplified
+/// The result has the input's border (I6, docs/reference/rules.md): edge by edge where both ends are locked, simplified
 /// where the surface is open. No triangle of it has two corners in one place. It has every position of a locked border
 /// that a triangle of the input has; no triangle at all where that cannot be had.
 [[nodiscard]] SimplifyResult simplify_group(const SimplifyInput& input, const SimplifyOptions& options);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Where everything lies in a file: header, section table, sections one after the other, each at a multiple of 16, and
-// the checksums over all of it (docs/format.md, File layout).
+// the checksums over all of it (docs/reference/format.md, File layout).
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The hash of what an asset says, whatever codec its pages are stored in (docs/format.md, Content hash).
+// The hash of what an asset says, whatever codec its pages are stored in (docs/reference/format.md, Content hash).
 #pragma once
 
 #include <string_view>

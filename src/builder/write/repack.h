@@ -21,8 +21,8 @@ struct RepackSection {
   std::span<const std::uint8_t> bytes;  ///< decoded where the format knows the section, else as stored
 };
 
-/// An asset as its reader sees it. \pre everything that a reader checks on opening holds (docs/format.md, What a reader
-/// must refuse)
+/// An asset as its reader sees it. \pre everything that a reader checks on opening holds (docs/reference/format.md,
+/// What a reader must refuse)
 struct RepackInput {
   std::vector<RepackSection> sections;            ///< all of the file, in its order
   std::uint32_t version = format::kPlainVersion;  ///< as the asset says

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Hardware raster is held within a stated distance of the CPU's picture (V409). docs/gpu.md says where its numbers come
-// from.
+// Hardware raster is held within a stated distance of the CPU's picture (V409). docs/explanation/gpu-verifier.md says
+// where its numbers come from.
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How much of a picture a cut covers, against how much its source does: what an aggregate is judged by
-// (docs/aggregates.md). Whole meshes, from directions and with a rasterizer that no builder uses.
+// (docs/guides/foliage.md). Whole meshes, from directions and with a rasterizer that no builder uses.
 #pragma once
 
 #include <array>

@@ -11,8 +11,9 @@
 namespace meshlode::judge {
 
 struct EdgeCounts {
-  std::uint64_t edges = 0;    ///< distinct, between two positions
-  std::uint64_t open = 0;     ///< not used as often one way as the other: the chain is not 0 there (docs/validation.md)
+  std::uint64_t edges = 0;  ///< distinct, between two positions
+  std::uint64_t open =
+      0;  ///< not used as often one way as the other: the chain is not 0 there (docs/reference/rules.md)
   std::uint64_t crowded = 0;  ///< of more than two triangles
 };
 

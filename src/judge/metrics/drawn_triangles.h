@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which triangles of a source belong into level 0, by the definition of docs/format.md ("The source"): those with area,
-// and those without that lie along edges of these. Internal to the judge.
+// Which triangles of a source belong into level 0, by the definition of docs/reference/format.md ("The source"): those
+// with area, and those without that lie along edges of these. Internal to the judge.
 #pragma once
 
 #include <cstdint>

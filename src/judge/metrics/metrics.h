@@ -67,8 +67,8 @@ class DeviationFrom {
 [[nodiscard]] Result<Surface> surface_of_clusters(const run::Asset& asset, MeshId mesh,
                                                   std::span<const ClusterId> clusters);
 
-/// The source: the triangles that have area, exactly (docs/format.md, "The source"), all primitives of the mesh
-/// together, as read. `primitives`: of each triangle the primitive that it is of.
+/// The source: the triangles that have area, exactly (docs/reference/format.md, "The source"), all primitives of the
+/// mesh together, as read. `primitives`: of each triangle the primitive that it is of.
 [[nodiscard]] Surface surface_of_source(const scene::SourceMesh& mesh,
                                         std::vector<std::uint32_t>* primitives = nullptr);
 

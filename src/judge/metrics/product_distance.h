@@ -3,10 +3,10 @@
 //
 //   x = (position, s_u · u and s_v · v of each UV set that counts, lambda · unit normal)
 //
-// with the Euclidean metric, in object units (docs/selection.md, "Promises"). A texture that swims, a seam that moved
-// sideways and a normal that turned are lengths there, as a dent is; the two-sided Hausdorff distance counts them
-// together. Where a chart ends nothing special happens: a point beyond a moved seam has its own chart's point nearby,
-// as far away as the seam moved.
+// with the Euclidean metric, in object units (docs/reference/selection.md, "Promises"). A texture that swims, a seam
+// that moved sideways and a normal that turned are lengths there, as a dent is; the two-sided Hausdorff distance counts
+// them together. Where a chart ends nothing special happens: a point beyond a moved seam has its own chart's point
+// nearby, as far away as the seam moved.
 //
 // Between the corners of a triangle all coordinates are linear, the normal's too, which is not made unit length again:
 // so surfaces are flat piece by piece, and the nearest point is found exactly (product_tree.h).

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Whether a triangle has area, decided exactly for all finite doubles: what the source is hangs on it (docs/format.md,
-// "The source").
+// Whether a triangle has area, decided exactly for all finite doubles: what the source is hangs on it
+// (docs/reference/format.md, "The source").
 #pragma once
 
 #include "base/vec.h"

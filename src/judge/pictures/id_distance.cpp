@@ -87,10 +87,6 @@ class RunsOfIds {
   std::vector<RowOf> rows_of_;  ///< of each surface the rows that show it, ascending
 };
 
-bool is_behind_backs(const IdPicture& picture, std::size_t pixel) {
-  return !picture.is_behind_backs.empty() && picture.is_behind_backs[pixel] != 0;
-}
-
 /// From a pixel's surface in `from` to the same in another picture; 0 where it is within `allowed`.
 double distance_beyond(const IdPicture& from, const RunsOfIds& to, std::uint32_t x, std::uint32_t y, double allowed) {
   const std::uint64_t id = from.id[std::size_t{y} * from.width + x];
@@ -120,34 +116,36 @@ double AllowedPixels::at(const IdPicture& picture, std::size_t pixel) const {
   return moved + kSamplingPx;
 }
 
-IdDistance measure_ids(const IdPicture& source, const IdPicture& cut, const AllowedPixels& allowed_pixels) {
+std::vector<AstrayPixel> find_astray(const IdPicture& source, const IdPicture& cut,
+                                     const AllowedPixels& allowed_pixels) {
   const RunsOfIds source_runs(source), cut_runs(cut);
-  std::vector<IdDistance> rows(source.height);
+  std::vector<std::vector<AstrayPixel>> rows(source.height);
   parallel_for_each_index(rows.size(), 4, [&](std::size_t row) {
     const auto y = static_cast<std::uint32_t>(row);
     for (std::uint32_t x = 0; x < source.width; ++x) {
       const std::size_t at = row * source.width + x;
-      if (source.id[at] == IdPicture::kBackground && cut.id[at] == IdPicture::kBackground) continue;
-      ++rows[row].pixels;
       if (source.id[at] == cut.id[at]) continue;
-      if (is_behind_backs(source, at) || is_behind_backs(cut, at)) continue;
       const double allowed = std::max(allowed_pixels.at(source, at), allowed_pixels.at(cut, at));
       // To the nearest pixel that is not in the picture.
       const std::uint32_t to_edge = std::min({x + 1, source.width - x, y + 1, source.height - y});
       if (to_edge <= allowed) continue;
       const double beyond =
           std::max(distance_beyond(source, cut_runs, x, y, allowed), distance_beyond(cut, source_runs, x, y, allowed));
-      if (beyond == 0.0) continue;
-      ++rows[row].astray;
-      rows[row].farthest_px = std::max(rows[row].farthest_px, beyond);
+      if (beyond > 0.0) rows[row].push_back({static_cast<std::uint32_t>(at), beyond});
     }
   });
+  std::vector<AstrayPixel> out;
+  for (const std::vector<AstrayPixel>& row : rows) out.insert(out.end(), row.begin(), row.end());
+  return out;
+}
+
+IdDistance sum_up(const IdPicture& source, const IdPicture& cut, std::span<const AstrayPixel> astray) {
   IdDistance out;
-  for (const IdDistance& row : rows) {
-    out.pixels += row.pixels;
-    out.astray += row.astray;
-    out.farthest_px = std::max(out.farthest_px, row.farthest_px);
+  for (std::size_t i = 0; i < source.id.size(); ++i) {
+    out.pixels += source.id[i] != IdPicture::kBackground || cut.id[i] != IdPicture::kBackground ? 1 : 0;
   }
+  out.astray = astray.size();
+  for (const AstrayPixel& pixel : astray) out.farthest_px = std::max(out.farthest_px, pixel.distance_px);
   return out;
 }
 

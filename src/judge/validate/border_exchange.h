@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What one group may do to an open border (docs/validation.md, "The border proof"). Internal to the judge.
+// What one group may do to an open border (docs/explanation/border-proof.md). Internal to the judge.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// L012: the content hash, computed again from docs/format.md ("Content hash").
+// L012: the content hash, computed again from docs/reference/format.md ("Content hash").
 #include <cstring>
 
 #include "base/hash.h"

@@ -81,7 +81,8 @@ void check_texts(FileTables& file, RuleLog& log);
 /// L101 … L115. True where every id and range is sound, so that the later rules may index.
 [[nodiscard]] bool check_tables(const FileTables& file, RuleLog& log);
 
-/// The content hash as docs/format.md defines it. `page_bytes` has the decoded bytes of every page. \pre L114 holds
+/// The content hash as docs/reference/format.md defines it. `page_bytes` has the decoded bytes of every page. \pre L114
+/// holds
 [[nodiscard]] Hash128 content_hash_of(const FileTables& file,
                                       std::span<const std::span<const std::uint8_t>> page_bytes);
 /// L012. `page_bytes` has the decoded bytes of every page.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The margin that errors and LOD spheres keep along the DAG so that the run-time rule's float rounding cannot undo I4
-// (docs/selection.md derives it). Restated here from the document: the judge shares no code with the builder.
+// (docs/reference/selection.md derives it). Restated here from the document: the judge shares no code with the builder.
 #pragma once
 
 #include "judge/validate/exact.h"

@@ -18,7 +18,7 @@ namespace meshlode::judge {
 
 namespace {
 
-/// A page as words, read by the letter of docs/format.md: nothing of <meshlode/page.h> or of decode.
+/// A page as words, read by the letter of docs/reference/format.md: nothing of <meshlode/page.h> or of decode.
 class Words {
  public:
   explicit Words(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}

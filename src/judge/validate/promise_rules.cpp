@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// L117 and L313: what an asset promises besides positions, from docs/format.md ("Promises").
+// L117 and L313: what an asset promises besides positions, from docs/reference/format.md ("Promises").
 #include <cmath>
 #include <string>
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The table of rules and the log that findings go into. An id never changes its meaning; docs/validation.md lists all.
+// The table of rules and the log that findings go into. An id never changes its meaning; docs/reference/rules.md lists
+// all.
 #pragma once
 
 #include <cstddef>

@@ -9,8 +9,8 @@
 
 namespace meshlode::judge {
 
-/// One broken rule. Ids are stable and listed in docs/validation.md: "L0xx" container, "L1xx" tables, "L2xx" pages,
-/// "L3xx" DAG (I4, I5), "L4xx" hierarchy (I8), "L5xx" geometry (I2, I3, I6), "V…" verify against the source.
+/// One broken rule. Ids are stable and listed in docs/reference/rules.md: "L0xx" container, "L1xx" tables, "L2xx"
+/// pages, "L3xx" DAG (I4, I5), "L4xx" hierarchy (I8), "L5xx" geometry (I2, I3, I6), "V…" verify against the source.
 struct Finding {
   std::string id;         ///< "L301"
   std::string invariant;  ///< "I4", empty for container rules

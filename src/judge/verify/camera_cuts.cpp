@@ -107,7 +107,8 @@ enum class Answer : std::uint8_t { kFails, kPasses, kTooClose };
 /// What the runtime's and the judge's translation may be off by together, of the products that make it.
 constexpr double kCancelled = 0x1p-49;
 
-/// The rule of docs/selection.md in doubles: e·s·k <= t·max(|M·c - eye| - r·s, near); orthographic e·s·k <= t.
+/// The rule of docs/reference/selection.md in doubles: e·s·k <= t·max(|M·c - eye| - r·s, near); orthographic e·s·k <=
+/// t.
 Answer decide(const View& view, const format::InstanceRecord& instance, const format::MeshRecord& mesh,
               const format::GroupRecord& group) {
   if (group.error >= format::kInfiniteError) return Answer::kFails;
@@ -127,14 +128,16 @@ Answer decide(const View& view, const format::InstanceRecord& instance, const fo
     const Vec3d moved = translation_of(instance) - camera.eye;
     const Vec3d away = turn(instance, origin + c) + moved;
     const Vec3d translation = turn(instance, origin) + moved;
-    // Where squares overflow the runtime draws what is finest (docs/numerics.md); where they vanish it does not care.
+    // Where squares overflow the runtime draws what is finest (docs/explanation/numerics.md); where they vanish it does
+    // not care.
     if (!std::isfinite(glm::dot(away, away) + glm::dot(translation, translation))) return Answer::kTooClose;
     const double distance = std::hypot(away.x, away.y, away.z);
     const double reach = sigma * (std::sqrt(glm::dot(c, c)) + group.radius);
     right *= std::max(distance - group.radius * sigma, camera.near_distance);
     // Single precision relative to everything that was added or subtracted on the way.
     slack = view.pixel_error * (distance + reach + std::hypot(translation.x, translation.y, translation.z));
-    // And double precision relative to what cancelled before: docs/numerics.md, "Where translations cancel".
+    // And double precision relative to what cancelled before: docs/explanation/numerics.md, "Where translations
+    // cancel".
     cancelled = view.pixel_error * kCancelled * sum_of_magnitudes(instance, origin);
   }
   slack = (slack + left + right) * 4e-6 + cancelled;

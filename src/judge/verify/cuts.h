@@ -89,8 +89,8 @@ struct CrowdedTotals {
 };
 
 /// Adds the edges of more than two triangles of level 0 and of `count` uniform cuts of one mesh, evenly by the rank of
-/// their errors. They are told, and nothing is wrong with them (docs/validation.md) unless the mesh `keeps_topology`: a
-/// cut that has more than level 0 fails then (V207).
+/// their errors. They are told, and nothing is wrong with them (docs/reference/rules.md) unless the mesh
+/// `keeps_topology`: a cut that has more than level 0 fails then (V207).
 void count_crowded_cuts(const run::Asset& asset, const MeshSurface& surface, std::uint32_t count, bool keeps_topology,
                         CrowdedTotals& totals, RuleLog& log);
 

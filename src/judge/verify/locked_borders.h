@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// V114: the open border of a source whose borders are locked (docs/format.md, "The open border") is in every cut,
-// vertex by vertex. Decided group by group, as the border proof is, and looked at once more on random cuts. Internal to
-// the judge.
+// V114: the open border of a source whose borders are locked (docs/reference/format.md, "The open border") is in every
+// cut, vertex by vertex. Decided group by group, as the border proof is, and looked at once more on random cuts.
+// Internal to the judge.
 #pragma once
 
 #include <cstdint>

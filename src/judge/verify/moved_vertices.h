@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Where the source's vertices are on the grid: each at the point nearest to it, but for those that the writer moved by
-// one point so that a needle keeps its width. Which did is not stored; docs/format.md ("Grid points", section 17) says
-// which it has to be, as a function of the level-0 triangles alone.
+// one point so that a needle keeps its width. Which did is not stored; docs/reference/format.md ("Grid points", section
+// 17) says which it has to be, as a function of the level-0 triangles alone.
 //
 // Nothing is believed because of that rule: it gives one point for each exact position, and V101 then asks whether the
 // source on those points is level 0, triangle by triangle. To look for such points in level 0 itself would be to solve

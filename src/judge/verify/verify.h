@@ -49,7 +49,7 @@ struct VerifyReport {
     bool skipped = false;  ///< with the reason in `what`: I7 in the qem tier, I1 in a quick look
   };
   std::vector<Check> checks;
-  /// Edges of more than two triangles, by docs/validation.md; nothing where no cut was looked at.
+  /// Edges of more than two triangles, by docs/reference/rules.md; nothing where no cut was looked at.
   struct CrowdedEdges {
     std::uint64_t cuts = 0;       ///< looked at
     std::uint64_t level0 = 0;     ///< summed over meshes

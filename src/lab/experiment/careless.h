@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The simplifier with care left out, for studies of what care costs (docs/numerics.md).
+// The simplifier with care left out, for studies of what care costs (docs/log/numerics.md).
 #pragma once
 
 #include "builder/simplify/simplify.h"

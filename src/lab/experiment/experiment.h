@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What only a study of the build wants: care that it leaves out, to see what care costs, and another simplifier to
-// stand beside ours (docs/numerics.md, "What care costs"). The builder knows neither: it has hooks for them. An asset
-// of such a build says so and is for no scene that ships.
+// stand beside ours (docs/log/numerics.md, "What care costs"). The builder knows neither: it has hooks for
+// them. An asset of such a build says so and is for no scene that ships.
 #pragma once
 
 #include <array>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // OpenMesh's decimater instead of our simplifier, under the same contract (`study --simplifier openmesh`): the
-// reference that everybody knows in the same DAG. For studies alone; docs/quality.md, "OpenMesh's decimater in the same
-// DAG".
+// reference that everybody knows in the same DAG. For studies alone; docs/log/quality.md, "OpenMesh's decimater in the
+// same DAG".
 #pragma once
 
 #include "builder/simplify/simplify.h"

@@ -129,7 +129,7 @@ void write_fault(Markup& html, const app::Diagnosis& fault) {
   write_paragraph(html, "What to do: " + fault.remedy + ".");
   if (!fault.hard_case.empty()) {
     html.open("p").text("What a build makes of it from easy to absurd: the hard case ");
-    html.element("code", fault.hard_case).text(" of docs/hard-cases.md.").close().line();
+    html.element("code", fault.hard_case).text(" of docs/reference/hard-cases.md.").close().line();
   }
   html.close().line();
 }

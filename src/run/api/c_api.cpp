@@ -159,6 +159,10 @@ std::vector<std::uint32_t> order_pages(const run::Asset& asset) {
 
 using namespace meshlode;
 
+uint32_t meshlode_version(void) {
+  return MESHLODE_VERSION;
+}
+
 uint32_t meshlode_format_version(void) {
   return format::kVersion;
 }

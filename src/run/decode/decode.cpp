@@ -214,8 +214,8 @@ void decode_colors(const ClusterLayout& layout, const std::uint32_t* words, std:
   }
 }
 
-/// Slot by slot, keeping the edge that the next triangle enters by; docs/format.md says the same for one triangle
-/// alone.
+/// Slot by slot, keeping the edge that the next triangle enters by; docs/reference/format.md says the same for one
+/// triangle alone.
 void decode_topology(const ClusterLayout& layout, const std::uint32_t* words,
                      std::vector<std::array<std::uint8_t, 3>>& out) {
   BitReader turns(words, layout.turn_bit);

@@ -11,8 +11,8 @@
 
 namespace meshlode::run {
 
-/// The integer point of stored values a and b (docs/format.md, Normals). Integer arithmetic only, so it is the same
-/// everywhere (I9). \pre a and b below 2^15, chart below 6
+/// The integer point of stored values a and b (docs/reference/format.md, Normals). Integer arithmetic only, so it is
+/// the same everywhere (I9). \pre a and b below 2^15, chart below 6
 [[nodiscard]] inline std::array<std::int32_t, 3> octahedral_point(std::int32_t a, std::int32_t b, std::uint32_t chart,
                                                                   std::int32_t scale) {
   std::int32_t x = a - scale;

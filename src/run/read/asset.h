@@ -52,9 +52,9 @@ class Asset {
   /// Whether choose() will do: positions always, else where the asset was built to promise it or more.
   [[nodiscard]] bool has_promise(format::Promise promise) const;
   /// From here on `error` of groups() and nodes(), and `level0_deviation` of meshes(), are those of this promise, so
-  /// that whoever selects by them keeps it (docs/selection.md). Views taken before keep the promise that they had,
-  /// until choose() is called again. What the file holds stays as it is: section_bytes(), bytes(), content hash. Error:
-  /// kUnsupported where the asset does not promise it, with how to build one that does. Not thread-safe.
+  /// that whoever selects by them keeps it (docs/reference/selection.md). Views taken before keep the promise that they
+  /// had, until choose() is called again. What the file holds stays as it is: section_bytes(), bytes(), content hash.
+  /// Error: kUnsupported where the asset does not promise it, with how to build one that does. Not thread-safe.
   [[nodiscard]] Status choose(format::Promise promise);
   [[nodiscard]] format::Promise chosen_promise() const { return chosen_; }
   [[nodiscard]] std::string_view meta_json() const { return meta_; }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What metric.h asks of the stored floats so that `coarser passes` implies `finer passes` for every camera, in float
-// arithmetic (I4 => I5). The proof is in docs/selection.md; u = 2^-24 is half an ulp, relative.
+// arithmetic (I4 => I5). The proof is in docs/reference/selection.md; u = 2^-24 is half an ulp, relative.
 #pragma once
 
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Levels that fade into each other instead of popping: what a renderer adds to the rule of metric.h, once, as C++ and
-// as GLSL. Nothing more is stored. docs/selection.md, "Fading".
+// as GLSL. Nothing more is stored. docs/reference/selection.md, "Fading".
 //
 // The rule is asked at FADE_STEPS thresholds, from the pixel error t down to nearly t / 2. Each of these is a cut of
 // its own: every piece of surface is drawn once in it (I5). A group that passes at the first so many steps of them has

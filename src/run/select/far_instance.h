@@ -15,7 +15,7 @@ namespace meshlode::run {
 
 struct FarBound {
   /// The BVH root's sphere, and the largest finite error of a group grown as an inner node's is: nested (nesting.h)
-  /// over every group but `only_root`. What docs/selection.md proves of the BVH's inner nodes holds for it.
+  /// over every group but `only_root`. What docs/reference/selection.md proves of the BVH's inner nodes holds for it.
   StoredBound bound{{0.0F, 0.0F, 0.0F}, 0.0F, 0.0F};
   /// The mesh's one group that never passes, of all groups of the asset; kNone where there is none or more than one,
   /// and then the bound says nothing.

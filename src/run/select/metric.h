@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The selection rule, once: this text is compiled as C++ and as GLSL (I9). docs/selection.md derives it and its
-// margins.
+// The selection rule, once: this text is compiled as C++ and as GLSL (I9). docs/reference/selection.md derives it and
+// its margins.
 //
 // A group *passes* for a view iff drawing what is coarser than its members moves nothing by more than the allowed
 // pixels:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // From a camera and an instance, in doubles, to the floats of MetricView. Everything here happens once per instance, so
-// its rounding is the same for every group; docs/selection.md says why each bound is rounded the way it is.
+// its rounding is the same for every group; docs/reference/selection.md says why each bound is rounded the way it is.
 #include <algorithm>
 #include <cmath>
 

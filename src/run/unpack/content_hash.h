@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The content hash of an asset computed again from its decoded content (docs/format.md, Content hash).
+// The content hash of an asset computed again from its decoded content (docs/reference/format.md, Content hash).
 #pragma once
 
 #include <functional>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The inverse of the strip model: numbers become the clusters' bit streams again (docs/codecs.md, Strips).
+// The inverse of the strip model: numbers become the clusters' bit streams again (docs/reference/codecs.md, Strips).
 #pragma once
 
 #include <span>

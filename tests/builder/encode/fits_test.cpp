@@ -17,7 +17,7 @@ namespace {
 
 using Position = std::array<std::int32_t, 3>;
 
-/// docs/format.md, 13, in 64 bits: nothing may have wrapped.
+/// docs/reference/format.md, 13, in 64 bits: nothing may have wrapped.
 void expect_undone(const std::vector<Position>& positions, const PositionFit& fit) {
   const std::size_t u = fit.axis == 0 ? 1 : 0;
   const std::size_t v = fit.axis == 2 ? 1 : 2;

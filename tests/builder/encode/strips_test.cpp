@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Strips lose no triangle, turn none over, and cost what the format promises. They are read here as docs/format.md
-// tells a GPU to: each triangle alone.
+// Strips lose no triangle, turn none over, and cost what the format promises. They are read here as
+// docs/reference/format.md tells a GPU to: each triangle alone.
 #include "builder/encode/strips.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# The examples of docs/batch.md for Ninja, Make and a CI job, as they stand there. (CMake's is in tests/install.)
-block() { awk -v mark="^\`\`\`$1" '$0 ~ mark { on = 1; next } /^```/ { on = 0 } on' "$REPOSITORY/docs/batch.md"; }
+# The examples of docs/guides/batches.md for Ninja, Make and a CI job, as they stand there. (CMake's is in tests/install.)
+block() { awk -v mark="^\`\`\`$1" '$0 ~ mark { on = 1; next } /^```/ { on = 0 } on' "$REPOSITORY/docs/guides/batches.md"; }
 scene() {
   local one='\000\000\200\077' zero='\000\000\000\000'
   printf "$zero$zero$zero$one$zero$zero$zero$one$zero" >"$1.bin"

@@ -42,8 +42,8 @@ code validate --quiet study.lode
 refuse '{"care": "needles=off"}'
 run study in/city.glb -o no.lode --no-settings-file --care needels=off
 run build in/city.glb -o no.lode --no-settings-file --care needles=off
-# The example of docs/plan.md is one.
-sed -n '/^```json/,/^```$/p' "$REPOSITORY/docs/plan.md" | grep -v '^```' >in/meshlode.json
+# The example of docs/reference/settings.md is one.
+sed -n '/^```json/,/^```$/p' "$REPOSITORY/docs/reference/settings.md" | grep -v '^```' >in/meshlode.json
 "$JSON_CHECK" "$SCHEMAS/settings.schema.json" <in/meshlode.json
 code plan in/city.glb
 # What cannot be settings: exit 3, as any input that breaks its rules.

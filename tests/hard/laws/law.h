@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A law: what has to hold between an asset and its source, or between the assets of two sources that differ in one way.
-// docs/numerics.md says of each why it is exact, or derives its bound.
+// docs/explanation/numerics.md says of each why it is exact, or derives its bound.
 #pragma once
 
 #include <cstdint>
@@ -47,7 +47,8 @@ struct Law {
   LawResult (*check)(const Built& base);
 };
 
-/// In the order of docs/numerics.md. The first is asked everywhere, the others at the easy end of each case.
+/// In the order of docs/explanation/numerics.md. The first is asked everywhere, the others at the easy end of each
+/// case.
 [[nodiscard]] std::span<const Law> laws();
 
 // laws/invariants.cpp

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Translation and scale. The grid's lattice goes through zero and its step is a power of two, so that a source moved by
-// whole steps or scaled by a power of two comes to the same integers (docs/numerics.md), as long as the source's own
-// coordinates can be moved without rounding.
+// whole steps or scaled by a power of two comes to the same integers (docs/explanation/numerics.md), as long as the
+// source's own coordinates can be moved without rounding.
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -74,8 +74,8 @@ LawResult compare(const Built& first, Sample changed, const Change& change) {
   return kept(compared.share);
 }
 
-/// By how much a distance to a surface is too large at most where floats choose the triangle (docs/numerics.md): for a
-/// distance d it is `absolute` + `relative` · d.
+/// By how much a distance to a surface is too large at most where floats choose the triangle
+/// (docs/explanation/numerics.md): for a distance d it is `absolute` + `relative` · d.
 struct Missed {
   double absolute = 0.0;  ///< object units
   double relative = 0.0;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Views: the hierarchy selects what the flat rule selects; a group that passes in floats passes in real numbers, within
-// the bound that docs/numerics.md derives from the rounding of rows, translation and sums; and a picture comes of it.
+// the bound that docs/explanation/numerics.md derives from the rounding of rows, translation and sums; and a picture
+// comes of it.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -18,7 +19,7 @@ namespace {
 using Real = long double;  // 64 bits of mantissa on x86-64: its own rounding is 2^-40 of the bound
 
 /// (E + R - d) over 8u (2 |c| sigma + d) of a group that passed, u = 2^-24; at most 1. 0 where the near distance
-/// decides, which the rule takes for at least 2^-69 of all lengths (docs/selection.md).
+/// decides, which the rule takes for at least 2^-69 of all lengths (docs/reference/selection.md).
 double overstep(const run::Camera& camera, double pixel_error, const format::InstanceRecord& instance,
                 const format::MeshRecord& mesh, const format::GroupRecord& group, double reach) {
   const Real sigma = instance.scale;

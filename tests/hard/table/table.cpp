@@ -13,10 +13,10 @@ constexpr const char* kHead =
     "<!-- SPDX-License-Identifier: GPL-3.0-or-later -->\n"
     "# Hard cases: where each one ends\n"
     "\n"
-    "Written by `hard_cases sweep --table docs/hard-cases.md --picture docs/pictures/hard-cases.png` "
+    "Written by `hard_cases sweep --table docs/reference/hard-cases.md --picture docs/pictures/hard-cases.png` "
     "(`tests/hard/main.cpp`);\n"
     "edit the program, not this page. What each law says, and why it is exact or where its bound comes from:\n"
-    "[numerics.md](numerics.md). `meshlode doctor` names the case that a fault of a scene belongs to.\n"
+    "[numerics.md](../explanation/numerics.md). `meshlode doctor` names the case that a fault of a scene belongs to.\n"
     "\n"
     "A case is tried along its parameter, from easy to absurd, and bisected where the verdict changes:\n"
     "\n"
@@ -33,7 +33,7 @@ constexpr const char* kHead =
     "over the\n"
     "1.05 times that the asset states of it (V206).\n"
     "\n"
-    "![Each case at the second parameter of its sweep, with its number](pictures/hard-cases.png)\n";
+    "![Each case at the second parameter of its sweep, with its number](../pictures/hard-cases.png)\n";
 
 std::string number(double x) {
   char text[40];

@@ -608,7 +608,7 @@ TEST(Validate, NoFlippedByteOutsidePaddingPasses) {
 
 #ifdef MESHLODE_SOURCE_DIR
 TEST(Validate, DocumentListsEveryRule) {
-  std::ifstream file(std::string(MESHLODE_SOURCE_DIR) + "/docs/validation.md");
+  std::ifstream file(std::string(MESHLODE_SOURCE_DIR) + "/docs/reference/rules.md");
   std::stringstream text;
   text << file.rdbuf();
   for (const RuleInfo& rule : all_rules()) {

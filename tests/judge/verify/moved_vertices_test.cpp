@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The judge's points on the grid: by the rule of docs/format.md ("Grid points"), case by case, and against the
-// builder's, which shares no line of code with it.
+// The judge's points on the grid: by the rule of docs/reference/format.md ("Grid points"), case by case, and against
+// the builder's, which shares no line of code with it.
 #include "judge/verify/moved_vertices.h"
 
 #include <algorithm>

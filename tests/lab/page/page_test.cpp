@@ -110,7 +110,8 @@ TEST(Page, SaysWhatTheSceneItselfCallsFor) {
   for (const char* part :
        {"<strong>triangles much longer than high</strong> (high, 34%; <code>needles</code>), 6,000 in all",
         "<bdi>mesh 3 &#39;made up&#39;</bdi>: 1,000 triangles; costs bytes (about 1,234 of the asset)",
-        "<li>and 2 more</li>", "What to do: remesh.", "the hard case <code>needles</code> of docs/hard-cases.md",
+        "<li>and 2 more</li>", "What to do: remesh.",
+        "the hard case <code>needles</code> of docs/reference/hard-cases.md",
         "<strong>meshes that no node draws</strong> (low; <code>undrawn-meshes</code>)<",
         "<code>meshlode doctor made-up.glb</code>", "href=\"#doctor\""}) {
     EXPECT_NE(page.find(part), std::string::npos) << part;

@@ -38,7 +38,8 @@ TEST(Metric, FollowsTheRuleOnAnExampleDoneByHand) {
   EXPECT_FALSE(passes(view, {{0, 0, -2}, 0.0F, 0.0241F}));
 }
 
-// docs/selection.md: E <= near or (E + R)^2 <= d^2. All of these are small whole numbers, so that nothing is rounded.
+// docs/reference/selection.md: E <= near or (E + R)^2 <= d^2. All of these are small whole numbers, so that nothing is
+// rounded.
 TEST(Metric, PassesWhereBothSidesAreEqual) {
   MetricView view{};
   view.row0.x = view.row1.y = view.row2.z = 1.0F;
@@ -91,7 +92,7 @@ TEST(Metric, TheFactorOfErrorsIsTightAsFarAsNormalFloatsGo) {
   }
 }
 
-// docs/selection.md: the scale is sigma * (1 + 2^-20), rounded up.
+// docs/reference/selection.md: the scale is sigma * (1 + 2^-20), rounded up.
 TEST(Metric, TheScaleIsRoundedUp) {
   RandomSource random(6);
   for (int i = 0; i < 1000; ++i) {
@@ -108,7 +109,7 @@ TEST(Metric, TheScaleIsRoundedUp) {
   }
 }
 
-// docs/selection.md derives how much of each margin rounding may use, in units of 2^-24.
+// docs/reference/selection.md derives how much of each margin rounding may use, in units of 2^-24.
 TEST(Metric, TheMarginsAreWhatTheProofNeeds) {
   constexpr double kUnit = 0x1p-24;
   EXPECT_GE(kNestingRadiusMargin, 5.1 * kUnit);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // From a camera and an instance to the floats of the rule, and the margins of nesting: each number against its formula
-// of docs/selection.md, with eleven more bits.
+// of docs/reference/selection.md, with eleven more bits.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A cluster's topology in shared memory, by a whole workgroup: every slot of the strips is resolved once, and a triangle is
 // found without walking along its strip. The same corners as lode_triangle(), which one invocation can call alone
-// (docs/format.md, section 13).
+// (docs/reference/format.md, section 13).
 //
 // Before including: kMaxTriangles of a cluster. The cluster's bits go by LodeCluster of <meshlode/decode.glsl>.
 
