@@ -22,16 +22,9 @@ class RunsOfIds {
  public:
   explicit RunsOfIds(const IdPicture& picture) : width_(picture.width), height_(picture.height), rows_(picture.height) {
     parallel_for_each_index(rows_.size(), 16, [&](std::size_t y) {
-      std::vector<Run>& row = rows_[y];
-      const std::uint64_t* id = &picture.id[y * width_];
-      for (std::uint32_t x = 0; x < width_; ++x) {
-        if (id[x] == IdPicture::kBackground) continue;
-        if (x > 0 && id[x] == id[x - 1])
-          row.back().last = x;
-        else
-          row.push_back({id[x], x, x});
-      }
-      std::sort(row.begin(), row.end(), comes_before);
+      add_row(&picture.id[y * width_], rows_[y]);
+      if (!picture.also.empty()) add_row(&picture.also[y * width_], rows_[y]);
+      std::sort(rows_[y].begin(), rows_[y].end(), comes_before);
     });
     for (std::uint32_t y = 0; y < picture.height; ++y) {
       for (std::size_t i = 0; i < rows_[y].size(); ++i) {
@@ -66,6 +59,15 @@ class RunsOfIds {
     std::uint64_t id;
     std::uint32_t first, last;
   };
+  void add_row(const std::uint64_t* id, std::vector<Run>& row) const {
+    for (std::uint32_t x = 0; x < width_; ++x) {
+      if (id[x] == IdPicture::kBackground) continue;
+      if (x > 0 && id[x] == id[x - 1])
+        row.back().last = x;
+      else
+        row.push_back({id[x], x, x});
+    }
+  }
   static bool comes_before(const Run& a, const Run& b) { return a.id != b.id ? a.id < b.id : a.first < b.first; }
 
   static double distance_in_row(const std::vector<Run>& row, std::uint64_t id, std::uint32_t x) {

@@ -51,6 +51,21 @@ bool IdJudge::has_both_in_one_place(SourceIds& truth, const IdPicture& cut, std:
   return gap <= double{truth.ids.level0[pixel]} + double{cut.level0[pixel]} + kDepthRounding * distance;
 }
 
+bool IdJudge::add_surfaces_in_one_place(std::span<const AstrayPixel> astray, SourceIds& truth, IdPicture& cut) const {
+  bool has_any = false;
+  for (const AstrayPixel& a : astray) {
+    if (!has_both_in_one_place(truth, cut, a.pixel)) continue;
+    if (!has_any) {
+      truth.ids.also.assign(truth.ids.id.size(), IdPicture::kBackground);
+      cut.also = truth.ids.also;
+      has_any = true;
+    }
+    truth.ids.also[a.pixel] = cut.id[a.pixel];
+    cut.also[a.pixel] = truth.ids.id[a.pixel];
+  }
+  return has_any;
+}
+
 Result<IdDistance> IdJudge::judge_cut(SourceIds& truth, const run::Camera& camera,
                                       std::span<const run::ClusterInstance> cut, const draw::VisibilityBuffer& drawn,
                                       double pixel_error) const {
@@ -63,10 +78,15 @@ Result<IdDistance> IdJudge::judge_cut(SourceIds& truth, const run::Camera& camer
       drawing.sides = draw::Sides::kBoth;
       truth.both_sides = draw_source(asset_, source_, truth.projection, masks_, drawing).depth;
     }
-    std::erase_if(astray, [&](const AstrayPixel& a) {
-      return both_sides->depth[a.pixel] > drawn.depth[a.pixel] ||
-             truth.both_sides[a.pixel] > truth.ids.depth[a.pixel] || has_both_in_one_place(truth, *ids, a.pixel);
-    });
+    const auto is_behind_a_back = [&](const AstrayPixel& a) {
+      return both_sides->depth[a.pixel] > drawn.depth[a.pixel] || truth.both_sides[a.pixel] > truth.ids.depth[a.pixel];
+    };
+    std::erase_if(astray, is_behind_a_back);
+    if (add_surfaces_in_one_place(astray, truth, *ids)) {
+      astray = find_astray(truth.ids, *ids, AllowedPixels(truth.projection, pixel_error));
+      std::erase_if(astray, is_behind_a_back);
+      truth.ids.also.clear();
+    }
   }
   return sum_up(truth.ids, *ids, astray);
 }

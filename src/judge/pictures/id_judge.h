@@ -37,10 +37,9 @@ class IdJudge {
 
   /// Errors: kUsage for a camera that cannot be drawn from.
   [[nodiscard]] Result<SourceIds> draw_source_ids(const run::Camera& camera) const;
-  /// Not judged are pixels
-  ///   behind a back that is not drawn, of the cut or of the source: an open surface from behind. How far that shows
-  ///   through hangs on how triangles face, which no error bounds;
-  ///   where the source has both surfaces in one place, so that nothing says which is in front.
+  /// Not judged are pixels behind a back that is not drawn, of the cut or of the source: an open surface from behind.
+  /// How far that shows through hangs on how triangles face, which no error bounds.
+  /// Where the source has both surfaces in one place either is seen there: nothing says which is in front.
   /// `drawn`: the picture of `cut`, which was chosen by `pixel_error`, by the CPU or a GPU. \pre `truth` is of `camera`
   [[nodiscard]] Result<IdDistance> judge_cut(SourceIds& truth, const run::Camera& camera,
                                              std::span<const run::ClusterInstance> cut,
@@ -48,6 +47,9 @@ class IdJudge {
 
  private:
   [[nodiscard]] const std::vector<std::uint32_t>& depths_of(SourceIds& truth, std::uint64_t id) const;
+  /// Where the source has what both pictures show, either shows both. Whether there is such a pixel.
+  [[nodiscard]] bool add_surfaces_in_one_place(std::span<const AstrayPixel> astray, SourceIds& truth,
+                                               IdPicture& cut) const;
   [[nodiscard]] bool has_both_in_one_place(SourceIds& truth, const IdPicture& cut, std::uint32_t pixel) const;
 
   const run::Asset& asset_;

@@ -25,6 +25,7 @@ struct IdPicture {
   /// Level 0's own deviation of what is seen, world units. Infinite of an aggregate: where its leaves are is judged by
   /// what they cover (V208).
   std::vector<float> level0;
+  std::vector<std::uint64_t> also;  ///< a second surface that may be seen there as well, or kBackground; empty: nowhere
 };
 
 /// What id a mesh and a material of the asset have, in `IdPicture::id`.

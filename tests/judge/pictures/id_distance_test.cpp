@@ -17,8 +17,12 @@ constexpr std::uint64_t kNothing = IdPicture::kBackground;
 
 IdPicture blank(std::uint32_t width, std::uint32_t height, std::uint64_t id = kNothing) {
   const std::size_t pixels = std::size_t{width} * height;
-  return {width, height, std::vector<std::uint64_t>(pixels, id), std::vector<std::uint32_t>(pixels, 1U << 31U),
-          std::vector<float>(pixels, 0.0F)};
+  return {width,
+          height,
+          std::vector<std::uint64_t>(pixels, id),
+          std::vector<std::uint32_t>(pixels, 1U << 31U),
+          std::vector<float>(pixels, 0.0F),
+          {}};
 }
 
 void fill(IdPicture& picture, std::uint32_t left, std::uint32_t top, std::uint32_t right, std::uint32_t bottom,
