@@ -22,16 +22,9 @@ class RunsOfIds {
  public:
   explicit RunsOfIds(const IdPicture& picture) : width_(picture.width), height_(picture.height), rows_(picture.height) {
     parallel_for_each_index(rows_.size(), 16, [&](std::size_t y) {
-      std::vector<Run>& row = rows_[y];
-      const std::uint64_t* id = &picture.id[y * width_];
-      for (std::uint32_t x = 0; x < width_; ++x) {
-        if (id[x] == IdPicture::kBackground) continue;
-        if (x > 0 && id[x] == id[x - 1])
-          row.back().last = x;
-        else
-          row.push_back({id[x], x, x});
-      }
-      std::sort(row.begin(), row.end(), comes_before);
+      add_row(&picture.id[y * width_], rows_[y]);
+      if (!picture.also.empty()) add_row(&picture.also[y * width_], rows_[y]);
+      std::sort(rows_[y].begin(), rows_[y].end(), comes_before);
     });
     for (std::uint32_t y = 0; y < picture.height; ++y) {
       for (std::size_t i = 0; i < rows_[y].size(); ++i) {
@@ -66,6 +59,15 @@ class RunsOfIds {
     std::uint64_t id;
     std::uint32_t first, last;
   };
+  void add_row(const std::uint64_t* id, std::vector<Run>& row) const {
+    for (std::uint32_t x = 0; x < width_; ++x) {
+      if (id[x] == IdPicture::kBackground) continue;
+      if (x > 0 && id[x] == id[x - 1])
+        row.back().last = x;
+      else
+        row.push_back({id[x], x, x});
+    }
+  }
   static bool comes_before(const Run& a, const Run& b) { return a.id != b.id ? a.id < b.id : a.first < b.first; }
 
   static double distance_in_row(const std::vector<Run>& row, std::uint64_t id, std::uint32_t x) {
@@ -86,10 +88,6 @@ class RunsOfIds {
   std::vector<std::vector<Run>> rows_;
   std::vector<RowOf> rows_of_;  ///< of each surface the rows that show it, ascending
 };
-
-bool is_behind_backs(const IdPicture& picture, std::size_t pixel) {
-  return !picture.is_behind_backs.empty() && picture.is_behind_backs[pixel] != 0;
-}
 
 /// From a pixel's surface in `from` to the same in another picture; 0 where it is within `allowed`.
 double distance_beyond(const IdPicture& from, const RunsOfIds& to, std::uint32_t x, std::uint32_t y, double allowed) {
@@ -120,34 +118,36 @@ double AllowedPixels::at(const IdPicture& picture, std::size_t pixel) const {
   return moved + kSamplingPx;
 }
 
-IdDistance measure_ids(const IdPicture& source, const IdPicture& cut, const AllowedPixels& allowed_pixels) {
+std::vector<AstrayPixel> find_astray(const IdPicture& source, const IdPicture& cut,
+                                     const AllowedPixels& allowed_pixels) {
   const RunsOfIds source_runs(source), cut_runs(cut);
-  std::vector<IdDistance> rows(source.height);
+  std::vector<std::vector<AstrayPixel>> rows(source.height);
   parallel_for_each_index(rows.size(), 4, [&](std::size_t row) {
     const auto y = static_cast<std::uint32_t>(row);
     for (std::uint32_t x = 0; x < source.width; ++x) {
       const std::size_t at = row * source.width + x;
-      if (source.id[at] == IdPicture::kBackground && cut.id[at] == IdPicture::kBackground) continue;
-      ++rows[row].pixels;
       if (source.id[at] == cut.id[at]) continue;
-      if (is_behind_backs(source, at) || is_behind_backs(cut, at)) continue;
       const double allowed = std::max(allowed_pixels.at(source, at), allowed_pixels.at(cut, at));
       // To the nearest pixel that is not in the picture.
       const std::uint32_t to_edge = std::min({x + 1, source.width - x, y + 1, source.height - y});
       if (to_edge <= allowed) continue;
       const double beyond =
           std::max(distance_beyond(source, cut_runs, x, y, allowed), distance_beyond(cut, source_runs, x, y, allowed));
-      if (beyond == 0.0) continue;
-      ++rows[row].astray;
-      rows[row].farthest_px = std::max(rows[row].farthest_px, beyond);
+      if (beyond > 0.0) rows[row].push_back({static_cast<std::uint32_t>(at), beyond});
     }
   });
+  std::vector<AstrayPixel> out;
+  for (const std::vector<AstrayPixel>& row : rows) out.insert(out.end(), row.begin(), row.end());
+  return out;
+}
+
+IdDistance sum_up(const IdPicture& source, const IdPicture& cut, std::span<const AstrayPixel> astray) {
   IdDistance out;
-  for (const IdDistance& row : rows) {
-    out.pixels += row.pixels;
-    out.astray += row.astray;
-    out.farthest_px = std::max(out.farthest_px, row.farthest_px);
+  for (std::size_t i = 0; i < source.id.size(); ++i) {
+    out.pixels += source.id[i] != IdPicture::kBackground || cut.id[i] != IdPicture::kBackground ? 1 : 0;
   }
+  out.astray = astray.size();
+  for (const AstrayPixel& pixel : astray) out.farthest_px = std::max(out.farthest_px, pixel.distance_px);
   return out;
 }
 

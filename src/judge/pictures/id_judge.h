@@ -3,8 +3,10 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <span>
 #include <string>
+#include <vector>
 
 #include <meshlode/result.h>
 
@@ -21,8 +23,10 @@ namespace meshlode::judge {
 /// The source from one camera.
 struct SourceIds {
   draw::Projection projection;
-  draw::VisibilityBuffer drawn;
   IdPicture ids;
+  /// What is drawn only where it is asked for: depths of both sides of all triangles, and of one surface by itself.
+  std::vector<std::uint32_t> both_sides;
+  std::map<std::uint64_t, std::vector<std::uint32_t>> of_surface;
 };
 
 class IdJudge {
@@ -33,12 +37,21 @@ class IdJudge {
 
   /// Errors: kUsage for a camera that cannot be drawn from.
   [[nodiscard]] Result<SourceIds> draw_source_ids(const run::Camera& camera) const;
+  /// Not judged are pixels behind a back that is not drawn, of the cut or of the source: an open surface from behind.
+  /// How far that shows through hangs on how triangles face, which no error bounds.
+  /// Where the source has both surfaces in one place either is seen there: nothing says which is in front.
   /// `drawn`: the picture of `cut`, which was chosen by `pixel_error`, by the CPU or a GPU. \pre `truth` is of `camera`
   [[nodiscard]] Result<IdDistance> judge_cut(SourceIds& truth, const run::Camera& camera,
                                              std::span<const run::ClusterInstance> cut,
                                              const draw::VisibilityBuffer& drawn, double pixel_error) const;
 
  private:
+  [[nodiscard]] const std::vector<std::uint32_t>& depths_of(SourceIds& truth, std::uint64_t id) const;
+  /// Where the source has what both pictures show, either shows both. Whether there is such a pixel.
+  [[nodiscard]] bool add_surfaces_in_one_place(std::span<const AstrayPixel> astray, SourceIds& truth,
+                                               IdPicture& cut) const;
+  [[nodiscard]] bool has_both_in_one_place(SourceIds& truth, const IdPicture& cut, std::uint32_t pixel) const;
+
   const run::Asset& asset_;
   std::span<const SourceSurface> source_;
   const draw::AlphaMasks& masks_;

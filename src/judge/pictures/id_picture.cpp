@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "judge/pictures/id_picture.h"
 
+#include <cmath>
+
 #include "base/parallel.h"
 #include "base/try.h"
 #include "draw/raster/cut_pages.h"
@@ -30,9 +32,10 @@ IdPainter::IdPainter(const run::Asset& asset) : asset_(asset) {
 
 void IdPainter::paint(std::size_t pixel, std::uint32_t instance, std::uint32_t material, IdPicture& out) const {
   const format::InstanceRecord& record = asset_.instances()[instance];
-  const std::uint32_t shown = is_one_surface_[record.mesh] != 0 ? format::kNone : material;
-  out.id[pixel] = std::uint64_t{record.mesh} << 32 | shown;
-  out.level0[pixel] = asset_.meshes()[record.mesh].level0_deviation * static_cast<float>(record.scale);
+  const bool is_one = is_one_surface_[record.mesh] != 0;
+  out.id[pixel] = id_of(record.mesh, is_one ? format::kNone : material);
+  out.level0[pixel] =
+      is_one ? HUGE_VALF : asset_.meshes()[record.mesh].level0_deviation * static_cast<float>(record.scale);
 }
 
 Result<IdPicture> IdPainter::of_cut(std::span<const run::ClusterInstance> cut,
@@ -61,12 +64,6 @@ IdPicture IdPainter::of_source(std::span<const SourceSurface> source, const draw
     const std::vector<std::uint32_t>& material = source[asset_.instances()[drawn.item[i]].mesh].material;
     paint(i, drawn.item[i], material.empty() ? 0 : material[drawn.triangle[i]], out);
   });
-  return out;
-}
-
-std::vector<std::uint8_t> find_backs(const draw::VisibilityBuffer& drawn, const draw::VisibilityBuffer& both_sides) {
-  std::vector<std::uint8_t> out(drawn.pixel_count());
-  for (std::size_t i = 0; i < out.size(); ++i) out[i] = both_sides.depth[i] > drawn.depth[i] ? 1 : 0;
   return out;
 }
 

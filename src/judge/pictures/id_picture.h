@@ -22,11 +22,16 @@ struct IdPicture {
   std::uint32_t width = 0, height = 0;
   std::vector<std::uint64_t> id;     ///< of the mesh and the material of what is seen, or kBackground
   std::vector<std::uint32_t> depth;  ///< as in VisibilityBuffer
-  std::vector<float> level0;         ///< level 0's own deviation of what is seen, world units
-  /// Not 0 where a triangle's back, which is not drawn, is nearer than what is seen: an open surface from behind. How
-  /// far that shows through hangs on how triangles face, which no error bounds. Empty: nowhere.
-  std::vector<std::uint8_t> is_behind_backs;
+  /// Level 0's own deviation of what is seen, world units. Infinite of an aggregate: where its leaves are is judged by
+  /// what they cover (V208).
+  std::vector<float> level0;
+  std::vector<std::uint64_t> also;  ///< a second surface that may be seen there as well, or kBackground; empty: nowhere
 };
+
+/// What id a mesh and a material of the asset have, in `IdPicture::id`.
+[[nodiscard]] constexpr std::uint64_t id_of(std::uint32_t mesh, std::uint32_t material) {
+  return std::uint64_t{mesh} << 32 | material;
+}
 
 /// Instances of a mesh are one surface. So are all materials of a mesh that has aggregates: what stands for its leaves
 /// has materials of its own.
@@ -47,9 +52,5 @@ class IdPainter {
   const run::Asset& asset_;
   std::vector<std::uint8_t> is_one_surface_;  ///< of each mesh
 };
-
-/// `both_sides`: the same picture as `drawn` without culling.
-[[nodiscard]] std::vector<std::uint8_t> find_backs(const draw::VisibilityBuffer& drawn,
-                                                   const draw::VisibilityBuffer& both_sides);
 
 }  // namespace meshlode::judge

@@ -68,18 +68,13 @@ std::optional<draw::MaskedTriangle> find_source_mask(const draw::AlphaMasks& mas
   return out;
 }
 
-/// How a source is drawn.
-struct Drawing {
-  const draw::Projection& projection;
-  const draw::AlphaMasks& masks;
-  draw::Sides sides;
-};
-
-void project_chunk(const run::Asset& asset, const SourceSurface& source, const Drawing& drawing, const Chunk& chunk,
+void project_chunk(const run::Asset& asset, const SourceSurface& source, const draw::Projection& projection,
+                   const draw::AlphaMasks& masks, const SourceDrawing& drawing, const Chunk& chunk,
                    draw::ScreenSoup& out) {
   const format::InstanceRecord& instance = asset.instances()[chunk.instance];
   const bool is_mirrored = (instance.flags & format::kInstanceMirrored) != 0;
   for (std::size_t t = chunk.first; t < chunk.first + chunk.count; ++t) {
+    if (drawing.material && *drawing.material != (source.material.empty() ? 0 : source.material[t])) continue;
     const bool is_double_sided =
         drawing.sides == draw::Sides::kBoth || (!source.double_sided.empty() && source.double_sided[t] != 0);
     const draw::Culling culling = is_double_sided ? draw::Culling::kNone
@@ -88,14 +83,14 @@ void project_chunk(const run::Asset& asset, const SourceSurface& source, const D
     std::array<draw::ClipVertex, 3> clip;
     for (std::size_t k = 0; k < 3; ++k) {
       const Vec3d& position = source.surface.positions[source.surface.triangles[t][k]];
-      clip[k] = project_source(drawing.projection, instance, position);
+      clip[k] = project_source(projection, instance, position);
     }
     draw::TriangleKey key{chunk.instance, static_cast<std::uint32_t>(t)};
-    if (const auto mask = find_source_mask(drawing.masks, asset.meshes()[instance.mesh], source, t, clip)) {
+    if (const auto mask = find_source_mask(masks, asset.meshes()[instance.mesh], source, t, clip)) {
       key.mask = static_cast<std::uint32_t>(out.masked.size());
       out.masked.push_back(*mask);
     }
-    draw::add_triangle(clip, culling, key, drawing.projection.size, out);
+    draw::add_triangle(clip, culling, key, projection.size, out);
   }
 }
 
@@ -174,12 +169,12 @@ draw::ClipVertex project_source(const draw::Projection& projection, const format
 
 draw::VisibilityBuffer draw_source(const run::Asset& asset, std::span<const SourceSurface> source,
                                    const draw::Projection& projection, const draw::AlphaMasks& masks,
-                                   draw::Sides sides) {
-  const Drawing drawing{projection, masks, sides};
+                                   const SourceDrawing& drawing) {
   std::vector<Chunk> chunks;
   for (std::size_t i = 0; i < asset.instances().size(); ++i) {
     const format::InstanceRecord& instance = asset.instances()[i];
     if ((instance.flags & format::kInstanceSingular) != 0 || instance.mesh >= source.size()) continue;
+    if (drawing.mesh && *drawing.mesh != instance.mesh) continue;
     const std::size_t count = source[instance.mesh].surface.triangles.size();
     for (std::size_t first = 0; first < count; first += kChunkTriangles) {
       chunks.push_back({static_cast<std::uint32_t>(i), first, std::min(kChunkTriangles, count - first)});
@@ -190,7 +185,7 @@ draw::VisibilityBuffer draw_source(const run::Asset& asset, std::span<const Sour
     std::vector<draw::ScreenSoup> parts(std::min(kBatchChunks, chunks.size() - first));
     parallel_for_each_index(parts.size(), 1, [&](std::size_t i) {
       const Chunk& chunk = chunks[first + i];
-      project_chunk(asset, source[asset.instances()[chunk.instance].mesh], drawing, chunk, parts[i]);
+      project_chunk(asset, source[asset.instances()[chunk.instance].mesh], projection, masks, drawing, chunk, parts[i]);
     });
     for (const draw::ScreenSoup& part : parts) draw::draw_soup(part, out);
   }

@@ -46,11 +46,18 @@ struct PaintedSurface {
 /// Every mesh of the scene that the asset has, in order; none where positions alone are promised.
 [[nodiscard]] std::vector<PaintedSurface> painted_surfaces(const run::Asset& asset, const scene::Scene& scene);
 
+/// How a source is drawn.
+struct SourceDrawing {
+  draw::Sides sides = draw::Sides::kOfMaterial;
+  /// Of one mesh and one of its materials alone, where they are given.
+  std::optional<std::uint32_t> mesh, material;
+};
+
 /// The source drawn for each instance of the asset, as draw_cut() draws the asset. Items are instances, triangles those
 /// of their mesh's surface. Meshes that `source` does not have are not drawn. `masks`: load_alpha_masks() of the asset.
 [[nodiscard]] draw::VisibilityBuffer draw_source(const run::Asset& asset, std::span<const SourceSurface> source,
                                                  const draw::Projection& projection, const draw::AlphaMasks& masks = {},
-                                                 draw::Sides sides = draw::Sides::kOfMaterial);
+                                                 const SourceDrawing& drawing = {});
 
 /// Corner `k` of a triangle of the source as it was drawn.
 [[nodiscard]] draw::ClipVertex project_source(const draw::Projection& projection,

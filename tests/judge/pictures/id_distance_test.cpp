@@ -43,7 +43,7 @@ draw::Projection flat(std::uint32_t width, std::uint32_t height) {
 /// Of cuts of one pixel: 2.5 pixels are allowed.
 IdDistance measure(const IdPicture& a, const IdPicture& b) {
   const draw::Projection projection = flat(a.width, a.height);
-  return measure_ids(a, b, AllowedPixels(projection, 1.0));
+  return sum_up(a, b, find_astray(a, b, AllowedPixels(projection, 1.0)));
 }
 
 TEST(IdDistance, EqualPicturesHaveNothingAstray) {
@@ -103,16 +103,6 @@ TEST(IdDistance, BeyondThePicturesEdgeNothingIsKnown) {
   EXPECT_EQ(measure(source, cut).astray, 0U);
   fill(source, 0, 0, 4, 40, 2);
   EXPECT_EQ(measure(source, cut).astray, 2U * 36U) << "two columns are three pixels from what lies beyond";
-}
-
-TEST(IdDistance, WhatLiesBehindABackIsNotJudged) {
-  IdPicture source = blank(60, 40, 1), cut = source;
-  fill(source, 20, 10, 30, 20, 2);
-  cut.is_behind_backs.assign(cut.id.size(), 0);
-  cut.is_behind_backs[15 * 60 + 25] = 1;
-  EXPECT_EQ(measure(source, cut).astray, 99U);
-  std::swap(source.is_behind_backs, cut.is_behind_backs);
-  EXPECT_EQ(measure(source, cut).astray, 99U);
 }
 
 /// By the definition, with all pixels against all.

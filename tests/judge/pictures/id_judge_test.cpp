@@ -139,7 +139,7 @@ TEST(IdJudge, AnOpenSurfaceIsNotJudgedFromBehind) {
     ASSERT_TRUE(drawn && truth);
     const auto ids = painter.of_cut(cut, *drawn);
     ASSERT_TRUE(ids);
-    without += measure_ids(truth->ids, *ids, AllowedPixels(truth->projection, 4.0)).astray;
+    without += find_astray(truth->ids, *ids, AllowedPixels(truth->projection, 4.0)).size();
     const auto distance = judge.judge_cut(*truth, camera, cut, *drawn, 4.0);
     ASSERT_TRUE(distance);
     seen += distance->pixels;
@@ -147,6 +147,17 @@ TEST(IdJudge, AnOpenSurfaceIsNotJudgedFromBehind) {
   }
   EXPECT_GT(seen, 0U) << "slopes that face the camera";
   EXPECT_GT(without, 0U);
+}
+
+/// A plate whose front lies in the floor of the recess: nothing says which of the two is seen. A tenth of a millimetre
+/// does.
+TEST(IdJudge, SurfacesInOnePlaceAreNotJudged) {
+  constexpr double kOntoFloor = -kRecessDepth - (kPlateBack + kPlateThickness);
+  const scene::Scene drawn = plate_scene({.plate_moved = {0.0, 0.0, kOntoFloor + 0.1}});
+  for (const double below : {0.0, 0.1}) {
+    const scene::Scene source = plate_scene({.plate_moved = {0.0, 0.0, kOntoFloor - below}});
+    EXPECT_EQ(judge_level0(drawn, source, front(), 4.0).astray > 0, below > 0.0);
+  }
 }
 
 /// A triangle without area goes, and the others keep the sides of their materials.
