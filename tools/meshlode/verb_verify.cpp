@@ -79,6 +79,19 @@ void write_brackets(JsonWriter& json, std::span<const judge::CutBracket> bracket
   json.end_array();
 }
 
+void write_surfaces(JsonWriter& json, const judge::IdTotals& totals) {
+  json.key("surfaces");
+  json.begin_object();
+  json.field("pictures", totals.pictures);
+  json.field("pixels", totals.all.pixels);
+  json.field("astray", totals.all.astray);
+  json.field("farthest_px", totals.all.farthest_px);
+  json.field("worst_share", totals.worst.share());
+  json.field("worst_picture", totals.worst_picture);
+  json.field("beyond_limit", totals.beyond_limit);
+  json.end_object();
+}
+
 std::string to_json(const std::string& path, const std::string& source, const judge::VerifyOptions& options,
                     const judge::VerifyReport& report) {
   JsonWriter json;
@@ -121,6 +134,7 @@ std::string to_json(const std::string& path, const std::string& source, const ju
     json.end_object();
   }
   if (!report.brackets.empty()) write_brackets(json, report.brackets);
+  if (report.surfaces) write_surfaces(json, *report.surfaces);
   if (!report.promises.empty()) {
     json.key("promises");
     json.begin_array();

@@ -151,6 +151,9 @@ constexpr std::array kRules{
          "what UVs and normals count as in promises is the mean size of a texel times the texture's sides, and an "
          "eighth "
          "of the diagonal"),
+    RULE(V211, "I7",
+         "from a camera each pixel of the source's picture and of the cut's shows a mesh and material that the other "
+         "picture has within the allowed pixels and 1.5, but for 1% of them"),
     // verify --gpu
     RULE(V401, "I9", "`--gpu`: the device decodes every cluster to the CPU's integers"),
     RULE(V402, "I8", "`--gpu`: the device's traversal selects what the flat rule selects"),

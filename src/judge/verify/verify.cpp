@@ -14,6 +14,7 @@
 #include "judge/verify/coverage_rule.h"
 #include "judge/verify/cuts.h"
 #include "judge/verify/deviations.h"
+#include "judge/verify/id_rule.h"
 #include "judge/verify/locked_borders.h"
 #include "judge/verify/promises.h"
 #include "judge/verify/source_parts.h"
@@ -303,6 +304,22 @@ void add_promises(const run::Asset& asset, const scene::Scene& source, const Ver
   }
 }
 
+void add_ids(const run::Asset& asset, const scene::Scene& source, const VerifyOptions& options, Report& report) {
+  if (options.is_quick) return report.skip("I7", "not checked: quick; which surface pixels show is not drawn");
+  RuleLog log;
+  const std::uint32_t cameras = std::min(options.cameras, kIdCameras);
+  const IdTotals totals = check_ids(asset, source, cameras, options.seed, log);
+  if (totals.pictures == 0) {
+    return report.skip("I7", "not checked: no camera draws which surface pixels show, or there is too much to draw");
+  }
+  report.out.surfaces = totals;
+  if (has_estimates(asset)) {
+    return report.skip("I7", describe(totals) + " (not judged: tier qem states the quadric's estimate)");
+  }
+  report.add_check("I7", describe(totals), totals.pictures, failures_of(log, {Rule::kV211}));
+  report.take(log);
+}
+
 }  // namespace
 
 VerifyReport verify_asset(const run::Asset& asset, const scene::Scene& whole, const VerifyOptions& options) {
@@ -324,6 +341,7 @@ VerifyReport verify_asset(const run::Asset& asset, const scene::Scene& whole, co
     add_deviations(asset, source, options, report);
     add_promises(asset, source, options, report);
     add_coverage(asset, options, report);
+    add_ids(asset, source, options, report);
   } else {
     report.add_check("I1", "not reached: " + clusters.error().message(), 0, 1);
     if (report.out.finding_count == 0) {
