@@ -71,8 +71,8 @@ constexpr std::array<SettingInfo, kSettingCount> kSettings{{
     {Setting::kPromise, "promise", "", kQuality,
      "what the stored errors cover: positions; texels: also texture coordinates; appearance: also normals", "position",
      false},
-    {Setting::kKeepLayers, "keep-layers",
-     "surfaces close above one another stay in order where an error comes near the gap between them; off: not", "on",
+    {Setting::kKeepLayers, "keep-layers", "", kAdvanced,
+     "keep surfaces that lie close above one another in order in coarse cuts; off: gaps are not looked for", "on",
      false},
 }};
 
