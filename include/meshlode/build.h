@@ -185,6 +185,8 @@ struct BuildOptions {
   /// Open borders (edges of one triangle of a mesh, by exact position) keep every vertex in every cut, so that tiles
   /// built apart with the same grid_step meet at any pair of levels. Concerns positions alone; needs more triangles.
   bool lock_borders = false;
+  /// Surfaces that lie close above one another stay in order where an error comes near the gap between them.
+  bool keep_layers = true;
   AggregateChoice aggregate = AggregateChoice::kNever;  ///< what is simplified by coverage
   /// kNamed: names of meshes, whose pieces of at most 512 triangles are taken, and of materials, whose pieces are.
   /// Comma-separated; '*' stands for any characters, '?' for one.

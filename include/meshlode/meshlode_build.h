@@ -110,6 +110,7 @@ typedef struct meshlode_build_options {
   int linear_colors;          /**< colour levels of PLY and STL are linear, not sRGB */
   int keep_topology;          /**< every cut of a manifold is one, with its holes, handles and pieces */
   int lock_borders;           /**< open borders keep every vertex in every cut: tiles with one grid_step meet */
+  int keep_layers;            /**< surfaces close above one another stay in order; 0: gaps are not kept */
   uint32_t aggregate;         /**< simplified by coverage: 0 nothing, 1 auto, 2 all small pieces, 3 aggregate_names */
   const char*
       aggregate_names;       /**< names of meshes and materials, comma-separated, with * and ?; may be NULL unless 3 */

@@ -34,10 +34,11 @@ struct StoredPlace {
 
   StoredPlace() = default;
   StoredPlace(const scene::SourceMesh& source, const AttributeLayout& layout, const EncodeOptions& encoding,
-              const MeshOptions& own, const SceneOptions& options, std::span<const TexelExtents> extents) {
+              const MeshOptions& own, const SceneOptions& options, std::span<const TexelExtents> extents,
+              const MeshGaps& gaps) {
     if (options.mesh_store == nullptr || !options.mesh_store->wants(count_mesh(source).triangles)) return;
     store = options.mesh_store;
-    key = mesh_key(source, layout, encoding, own, options, extents);
+    key = mesh_key(source, layout, encoding, own, options, extents, gaps);
   }
 
   /// What was kept becomes `built`. False: nothing was.
@@ -85,16 +86,19 @@ Result<BuiltMesh> build_mesh(const Source& from, std::size_t index, const Survey
 
   MeshPlan plan = plan_mesh(source, from.scene.materials, request_of(own, options.promise), label);
   built.decisions = std::move(plan.decisions);
+  const MeshGaps& gaps = found.gaps[index];
   const AggregateDecision& aggregate = found.aggregates[index];
   if (!aggregate.reason.empty()) {
     built.decisions.push_back({label + ": aggregate", aggregate.is_aggregate, aggregate.reason});
   }
+  if (!gaps.codes.empty()) built.decisions.push_back(describe_gaps(gaps, count_mesh(source).triangles, label));
   built.clock.end(Stage::kPlan);
 
   const EncodeOptions encoding = encode_options(options, own, source, plan.layout, found.texels);
   // What an aggregate becomes depends on images too: the key would have to have them.
-  const StoredPlace place =
-      aggregate.is_aggregate ? StoredPlace() : StoredPlace(source, plan.layout, encoding, own, options, found.extents);
+  const StoredPlace place = aggregate.is_aggregate
+                                ? StoredPlace()
+                                : StoredPlace(source, plan.layout, encoding, own, options, found.extents, gaps);
   const std::size_t planned = built.decisions.size();
   if (place.take(label, built)) {
     from.free_mesh(index);
@@ -106,6 +110,8 @@ Result<BuiltMesh> build_mesh(const Source& from, std::size_t index, const Survey
   const bool is_painted = promises != 0;  // an aggregate may come to have no level but the finest, which promises too
   PrepareOptions preparing = prepare_options(own);
   if (options.hooks != nullptr) preparing.separates_needles = options.hooks->separates_needles;
+  preparing.gaps = gaps.codes;
+  preparing.gap_reach = gaps.reach;
   preparing.keeps_flat_normals = is_painted && options.promise == format::Promise::kAppearance;
   TRY_LET(mesh, prepare_mesh(source, plan.layout, preparing));
   const UvUnits uv_units = is_painted ? uv_units_of(source, plan.layout, found.extents) : UvUnits{};

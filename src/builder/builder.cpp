@@ -85,6 +85,7 @@ Result<std::vector<std::uint8_t>> build_asset_of(const Source& given, PipelineOp
   if (!parts.empty()) scene::split_parts(given.owned != nullptr ? *given.owned : split.emplace(given.scene), parts);
   const Source from = split ? Source{*split, &*split} : given;
   const scene::Scene& scene = from.scene;
+  found->gaps = find_layers(scene, found->aggregates, options);
   Result<std::vector<BuiltMesh>> meshes =
       with_threads_at_most(fit->threads, [&] { return build_meshes(from, options, *found, fit->at_once, progress); });
   if (!meshes) return meshes.error();

@@ -46,6 +46,7 @@ struct SceneOptions {
   bool linear_colors = false;        ///< the same of ImportOptions::linear_colors
   format::Promise promise = format::Promise::kPosition;  ///< what errors there are (src/builder/promise)
   bool keep_topology = false;                 ///< every cut of a manifold is one (builder/simplify/kept_topology.h)
+  bool keep_layers = true;                    ///< gaps between layers are found and kept (builder/layers)
   std::uint32_t max_cluster_triangles = 128;  ///< I2; at most format::kMaxClusterTriangles
   std::uint32_t max_cluster_vertices = 256;   ///< I2; at most format::kMaxClusterVertices
   std::uint32_t group_clusters = kUsualGroupClusters;  ///< what groups aim at, kFewestGroupClusters to 32

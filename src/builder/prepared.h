@@ -47,7 +47,8 @@ struct PreparedMesh {
   std::vector<std::uint32_t> wedge_position;     ///< per wedge, into positions
   std::vector<float> wedge_attributes;           ///< per wedge, layout.stride() floats
   std::vector<WedgeTriangle> triangles;          ///< wedge ids
-  std::vector<std::uint32_t> triangle_material;  ///< MaterialId value per triangle
+  std::vector<std::uint32_t> triangle_material;  ///< MaterialId value per triangle, and its gap (gap_label.h)
+  double gap_reach = 0.0;                        ///< of the gaps, object units; 0: there are none
   /// The same triangles before the grid: what deviations are measured against. Relative to the origin, object units.
   std::vector<Vec3d> exact_positions;
   std::vector<Vec3i> exact_on_grid;                           ///< where the grid put each of them

@@ -13,13 +13,6 @@ namespace meshlode::builder {
 
 namespace {
 
-/// Foliage and soups: so many pieces so small that they are seen together, not one by one.
-bool is_aggregate(const PreparedMesh& mesh) {
-  constexpr std::uint64_t kFewestPieces = 64;
-  constexpr std::uint64_t kLargestPiece = 64;  // triangles, on average
-  return mesh.piece_count >= kFewestPieces && mesh.triangles.size() <= kLargestPiece * mesh.piece_count;
-}
-
 /// The budget of each stored UV set in UV units; 0 leaves it to encode, where no texture's size is known.
 std::array<double, scene::kMaxUvSets> uv_errors(const MeshOptions& options, const scene::SourceMesh& source,
                                                 const AttributeLayout& layout,
@@ -43,6 +36,12 @@ std::array<double, scene::kMaxUvSets> uv_errors(const MeshOptions& options, cons
 }
 
 }  // namespace
+
+bool are_seen_together(std::uint64_t pieces, std::uint64_t triangles) {
+  constexpr std::uint64_t kFewestPieces = 64;
+  constexpr std::uint64_t kLargestPiece = 64;  // triangles, on average
+  return pieces >= kFewestPieces && triangles <= kLargestPiece * pieces;
+}
 
 Status check_options(const PipelineOptions& options, std::size_t mesh_count) {
   if (options.max_cluster_triangles == 0 || options.max_cluster_triangles > format::kMaxClusterTriangles ||
@@ -105,7 +104,7 @@ DagOptions dag_options(const PipelineOptions& options, const PreparedMesh& mesh,
   dag.grouping.target_clusters = options.group_clusters;
   dag.caps.merge_triangles = mesh.triangles.size() >= settings_of(options.preset).merged_from;
   dag.simplify.keep_topology = options.keep_topology;
-  dag.simplify.keep_area = !options.keep_topology && is_aggregate(mesh);
+  dag.simplify.keep_area = !options.keep_topology && are_seen_together(mesh.piece_count, mesh.triangles.size());
   if (options.hooks != nullptr) dag.simplify_group = options.hooks->simplify_group;
   dag.max_group_bytes = format::kMaxPageBytes - kPageFrameBytes;
   dag.cluster_bytes = [&mesh, encode](std::uint32_t vertices, std::uint32_t triangles, std::uint32_t materials) {

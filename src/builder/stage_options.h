@@ -24,6 +24,9 @@ namespace meshlode::builder {
 /// and dropped, and for mesh options of another number of meshes.
 [[nodiscard]] Status check_options(const PipelineOptions& options, std::size_t mesh_count);
 
+/// Foliage and soups: so many pieces so small that they are seen together, not one by one.
+[[nodiscard]] bool are_seen_together(std::uint64_t pieces, std::uint64_t triangles);
+
 [[nodiscard]] AttributeRequest request_of(const MeshOptions& options, format::Promise promise);
 
 [[nodiscard]] PrepareOptions prepare_options(const MeshOptions& options);

@@ -6,9 +6,13 @@
 #include <optional>
 #include <utility>
 
+#include "base/append_format.h"
+#include "base/printable.h"
 #include "base/try.h"
 #include "builder/aggregate/material_looks.h"
+#include "builder/needs.h"
 #include "builder/stage_options.h"
+#include "scene/parts/pieces.h"
 
 namespace meshlode::builder {
 
@@ -18,6 +22,34 @@ std::vector<AggregateDecision> decide_aggregates(const scene::Scene& scene, cons
     decisions.push_back(decide_aggregate(scene.meshes[i], aggregate_question(scene, i, options)));
   }
   return decisions;
+}
+
+std::vector<MeshGaps> find_layers(const scene::Scene& scene, const std::vector<AggregateDecision>& aggregates,
+                                  const PipelineOptions& options) {
+  std::vector<std::uint8_t> wants(scene.meshes.size(), 0);
+  for (std::size_t i = 0; i < wants.size() && options.keep_layers; ++i) {
+    const bool has_levels = count_mesh(scene.meshes[i]).triangles > options.max_cluster_triangles;
+    const bool is_thinned_out = aggregates[i].is_aggregate && aggregates[i].most_triangles.empty();
+    wants[i] = has_levels && !is_thinned_out ? 1 : 0;
+  }
+  std::vector<MeshGaps> gaps = find_gaps(scene, wants);
+  for (std::size_t i = 0; i < gaps.size(); ++i) {
+    if (gaps[i].codes.empty()) continue;
+    const std::size_t pieces = scene::Pieces(scene.meshes[i]).pieces.size();
+    if (are_seen_together(pieces, gaps[i].codes.size())) gaps[i].codes = {};
+  }
+  return gaps;
+}
+
+PlanDecision describe_gaps(const MeshGaps& gaps, std::uint64_t triangles, const std::string& label) {
+  const GapSummary found = summarize(gaps);
+  std::string text;
+  append_format(
+      text,
+      "%s of %s triangles have a gap of %.2g to %.2g to a surface above or below that faces the same way: cuts "
+      "whose error comes near it keep it, and more triangles there",
+      grouped_digits(found.triangles).c_str(), grouped_digits(triangles).c_str(), found.narrowest, found.widest);
+  return {label + ": layers", true, std::move(text)};
 }
 
 Result<Survey> survey(const scene::Scene& scene, const PipelineOptions& options,

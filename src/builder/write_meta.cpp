@@ -136,6 +136,7 @@ Json settings_json(const scene::Scene& scene, const PipelineOptions& options,
   if (options.promise != format::Promise::kPosition) settings["promise"] = format::name_of(options.promise);
   if (options.keep_topology) settings["keep_topology"] = true;
   if (options.lock_borders) settings["lock_borders"] = true;
+  if (!options.keep_layers) settings["keep_layers"] = false;
   if (options.aggregate != AggregateChoice::kNever) settings["aggregate"] = aggregate_word(options);
   if (!scene.choice.empty()) settings["scene"] = scene.choice;
   settings["cluster_triangles"] = options.max_cluster_triangles;

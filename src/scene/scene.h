@@ -47,6 +47,7 @@ struct SourceMesh {
   std::vector<Primitive> primitives;
   ImportDrops drops;
   MeshRepairs repairs;
+  bool is_deformed = false;  ///< a skin or morph targets move its vertices: what it lies beside may be elsewhere
 };
 
 enum class AlphaMode : std::uint8_t { kOpaque, kMask, kBlend };

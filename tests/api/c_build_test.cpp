@@ -84,6 +84,7 @@ TEST(CBuild, TheSameBytesAsInCpp) {
   options.strip_effort = 1;
   options.keep_topology = 1;
   options.lock_borders = 1;
+  options.keep_layers = 0;
   options.aggregate = 1;
   options.position_error = 0.01;
   options.thread_count = 1;
@@ -95,6 +96,7 @@ TEST(CBuild, TheSameBytesAsInCpp) {
   same.strip_effort = StripEffort::kFast;
   same.keep_topology = true;
   same.lock_borders = true;
+  same.keep_layers = false;
   same.aggregate = AggregateChoice::kAuto;
   same.position_error = 0.01;
   EXPECT_EQ(build_in_c(scene, &options), build_in_cpp(arrays, same));

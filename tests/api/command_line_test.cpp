@@ -53,6 +53,7 @@ const Saying kSayings[] = {
     {"--cluster-triangles 64", [](BuildOptions& o) { o.cluster_triangles = 64; }},
     {"--keep-topology", [](BuildOptions& o) { o.keep_topology = true; }},
     {"--lock-borders --grid 0.01", [](BuildOptions& o) { o.lock_borders = true, o.grid_step = 0.01; }, "foliage.glb"},
+    {"--keep-layers off", [](BuildOptions& o) { o.keep_layers = false; }},
     {"--aggregate auto", [](BuildOptions& o) { o.aggregate = AggregateChoice::kAuto; }},
     {"--aggregate always", [](BuildOptions& o) { o.aggregate = AggregateChoice::kAlways; }},
     {"--promise texels --error-tier measured",

@@ -42,6 +42,10 @@ bool parse(int argc, char** argv, Arguments& arguments) {
       arguments.harm = Harm::kSurgery;
       continue;
     }
+    if (word == "--layers") {
+      arguments.harm = Harm::kLayers;
+      continue;
+    }
     if (word == "--without-deviation") {
       arguments.depth = Depth::kVerifyWithoutDeviation;
       continue;
@@ -81,15 +85,16 @@ bool parse(int argc, char** argv, Arguments& arguments) {
 int usage() {
   std::fputs(
       "usage: random_scenes run FIRST COUNT [--jobs N] [--max-triangles N] [--max-refused PERCENT]\n"
-      "                     [--shrink-into FOLDER] [--verbose] [--without-deviation] [--samples N] [--surgery]\n"
+      "                     [--shrink-into FOLDER] [--verbose] [--without-deviation] [--samples N] [--surgery | "
+      "--layers]\n"
       "                     [--with 'OPTION...']   build all of them with these, and with no other of their options\n"
       "                     [--started]   steps are forks of one process a job, which is quicker under sanitizers\n"
       "       random_scenes seeds SEED... [the same]\n"
       "       random_scenes soak FIRST MINUTES [the same]\n"
       "       random_scenes replay FOLDER [--jobs N] [--verbose]\n"
       "       random_scenes pieces TRIANGLES\n"
-      "       random_scenes write SEED OUT.glb [--surgery]\n"
-      "       random_scenes shrink SEED OUT.glb --rule ID [--shrink-seconds N] [--surgery]\n"
+      "       random_scenes write SEED OUT.glb [--surgery | --layers]\n"
+      "       random_scenes shrink SEED OUT.glb --rule ID [--shrink-seconds N] [--surgery | --layers]\n"
       "all:   [--program MESHLODE] [--seconds N]   processor time that a step may take\n",
       stderr);
   return 1;

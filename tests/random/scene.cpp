@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "format/names.h"
+#include "layers.h"
 #include "shapes.h"
 #include "surgery.h"
 
@@ -322,6 +323,7 @@ RandomScene random_scene(std::uint64_t seed) {
 
 RandomScene random_scene(std::uint64_t seed, Harm harm) {
   Dice dice(Random(seed).next());  // seeds beside each other must not be the same stream, shifted
+  if (harm == Harm::kLayers) return layered_scene(dice, dice.between(2000, 8000));
   RandomScene scene;
   std::uint32_t left = random_triangles(dice);
   const std::uint32_t meshes = dice.chance(0.5) ? 1 : dice.between(2, 3);

@@ -53,6 +53,7 @@ struct RandomScene {
 enum class Harm {
   kDamage,   ///< pieces of all kinds, damaged (shapes.h): random_scene(seed)
   kSurgery,  ///< good surfaces, operated on (surgery.h)
+  kLayers,   ///< none: good surfaces closely above one another (layers.h), of 2,000 to 8,000 triangles
 };
 /// The same, with harm of the kind; a seed is another scene for each.
 [[nodiscard]] RandomScene random_scene(std::uint64_t seed, Harm harm);

@@ -109,6 +109,20 @@ TEST(Surgery, EveryOperationOccursAndScenesAreSound) {
   for (const Operation& operation : surgery_operations()) EXPECT_GE(operations[operation.name], 20U) << operation.name;
 }
 
+TEST(Layers, ASeedIsTheSameSceneWithEveryCompiler) {
+  std::uint64_t hash = 0xCBF29CE484222325ULL;
+  std::size_t layers = 0;
+  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+    const RandomScene scene = random_scene(seed, Harm::kLayers);
+    hash = fnv1a(write_glb(scene), hash);
+    layers += scene.meshes.size();
+    EXPECT_GT(scene.triangle_count(), 500U) << seed;
+    EXPECT_LT(scene.triangle_count(), 20000U) << seed;
+  }
+  EXPECT_GT(layers, 90U);
+  EXPECT_EQ(hash, 4679551733747123205ULL);
+}
+
 // One triangle is the least that an operation may be given, and what it leaves may be operated on again.
 TEST(Surgery, NoOperationNeedsMoreThanOneTriangle) {
   for (const Operation& operation : surgery_operations()) {

@@ -44,6 +44,14 @@ int run(const char* out_dir, const char* triangles_text, std::string_view option
   }
   if (triangles) return write(out_dir, lab::make_terrain_file(*triangles));
   if (option == "--painted") return write(out_dir, lab::make_painted_tree_file());
+  if (option == "--layers") {
+    for (const std::string& kind : lab::layered_kinds()) {
+      for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+        if (const int code = write(out_dir, lab::make_layered_file(kind, seed)); code != 0) return code;
+      }
+    }
+    return 0;
+  }
   if (option == "--aggregates") {
     for (const std::string& name : lab::aggregate_names()) {
       if (const int code = write(out_dir, lab::make_aggregate_file(name)); code != 0) return code;
@@ -61,9 +69,10 @@ int run(const char* out_dir, const char* triangles_text, std::string_view option
 int main(int argc, char** argv) {
   const bool has_triangles = argc == 4 && std::string_view(argv[2]) == "--triangles";
   const std::string_view option = argc == 3 ? argv[2] : "";
-  const bool is_known = argc == 2 || has_triangles || option == "--aggregates" || option == "--painted";
+  const bool is_known =
+      argc == 2 || has_triangles || option == "--aggregates" || option == "--painted" || option == "--layers";
   if (!is_known || argv[1][0] == '-') {
-    std::fputs("usage: meshlode_generate OUTDIR [--triangles NUMBER | --aggregates | --painted]\n", stderr);
+    std::fputs("usage: meshlode_generate OUTDIR [--triangles NUMBER | --aggregates | --layers | --painted]\n", stderr);
     return static_cast<int>(ErrorCode::kUsage);
   }
   return run(argv[1], has_triangles ? argv[3] : nullptr, option);

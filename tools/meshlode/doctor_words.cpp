@@ -7,6 +7,7 @@
 
 #include "base/append_format.h"
 #include "base/printable.h"
+#include "builder/layers/find_gaps.h"
 #include "scene/detect/detect.h"
 #include "scene/detect/fault.h"
 
@@ -155,6 +156,42 @@ app::DiagnosisPlace place_of(const scene::Scene& scene, const scene::Fault& faul
   return place;
 }
 
+/// By number among those of all primitives.
+app::DiagnosisTriangle triangle_of(const scene::SourceMesh& mesh, std::uint32_t triangle) {
+  std::uint32_t primitive = 0;
+  for (; triangle >= mesh.primitives[primitive].indices.size() / 3; ++primitive) {
+    triangle -= static_cast<std::uint32_t>(mesh.primitives[primitive].indices.size() / 3);
+  }
+  return {primitive, triangle};
+}
+
+/// Surfaces closer to one another than the errors of coarse levels will be: no share, because a build keeps them.
+constexpr const char* kLayersId = "close-layers";
+
+void add_layers(std::vector<app::Diagnosis>& diagnoses, const scene::Scene& scene) {
+  const std::vector<builder::MeshGaps> gaps =
+      builder::find_gaps(scene, std::vector<std::uint8_t>(scene.meshes.size(), 1));
+  app::Diagnosis words;
+  words.id = kLayersId;
+  words.title = "triangles closer to a surface above or below than coarse levels are to the source";
+  words.remedy =
+      "none is needed: build keeps them in order, with more triangles; what nobody needs to tell apart is better "
+      "joined, "
+      "and a decal better a texture";
+  for (std::uint32_t mesh = 0; mesh < gaps.size(); ++mesh) {
+    const builder::GapSummary found = builder::summarize(gaps[mesh]);
+    if (found.triangles == 0) continue;
+    app::DiagnosisPlace place;
+    place.mesh = mesh;
+    place.where = app::mesh_words(mesh, scene.meshes[mesh].name);
+    place.count = place.triangle_count = found.triangles;
+    place.detail = app::counted(found.triangles, "triangles") + ", gaps of " + short_of(found.narrowest) + " to " +
+                   short_of(found.widest);
+    for (const std::uint32_t t : found.first) place.triangles.push_back(triangle_of(scene.meshes[mesh], t));
+    app::add_place(diagnoses, words, std::move(place));
+  }
+}
+
 }  // namespace
 
 const char* hard_case_of(FaultKind kind) {
@@ -163,6 +200,7 @@ const char* hard_case_of(FaultKind kind) {
 
 std::vector<std::string> source_fault_ids() {
   std::vector<std::string> ids = all_names(scene::kFaultNames);
+  ids.emplace_back(kLayersId);
   ids.emplace_back(app::kLeftOutId);
   return ids;
 }
@@ -178,6 +216,7 @@ std::vector<app::Diagnosis> diagnose_scene(const scene::Scene& scene) {
     words.hard_case = hard_case_of(fault.kind);
     app::add_place(diagnoses, words, place_of(scene, fault, all));
   }
+  add_layers(diagnoses, scene);
   for (const scene::LeftOut& left : scene.left_out) app::add_left_out(diagnoses, left.what, left.why);
   app::rank(diagnoses);
   return diagnoses;

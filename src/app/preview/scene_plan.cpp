@@ -11,7 +11,6 @@
 #include "app/preview/estimate.h"
 #include "base/parallel.h"
 #include "base/try.h"
-#include "builder/aggregate/aggregate_choice.h"
 #include "builder/encode/encode.h"
 #include "builder/encode/uv_grid.h"
 #include "builder/needs.h"
@@ -19,6 +18,7 @@
 #include "builder/plan/texel_sizes.h"
 #include "builder/prepare/prepare.h"
 #include "builder/stage_options.h"
+#include "builder/survey.h"
 
 namespace meshlode::app {
 
@@ -162,9 +162,14 @@ Result<ScenePlan> plan_scene(const scene::Scene& scene, const builder::PipelineO
     plan.meshes.push_back(std::move(*mesh));
   }
   plan.features = builder::list_features(scene);
+  const std::vector<builder::AggregateDecision> aggregates = builder::decide_aggregates(scene, options);
+  const std::vector<builder::MeshGaps> gaps = builder::find_layers(scene, aggregates, options);
   for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
-    const builder::AggregateDecision aggregate =
-        builder::decide_aggregate(scene.meshes[i], builder::aggregate_question(scene, i, options));
+    if (!gaps[i].codes.empty()) {
+      plan.features.push_back(
+          builder::describe_gaps(gaps[i], plan.meshes[i].triangles, builder::mesh_label(scene.meshes[i], i)));
+    }
+    const builder::AggregateDecision& aggregate = aggregates[i];
     if (aggregate.reason.empty()) continue;
     plan.features.push_back(
         {builder::mesh_label(scene.meshes[i], i) + ": aggregate", aggregate.is_aggregate,

@@ -71,6 +71,9 @@ constexpr std::array<SettingInfo, kSettingCount> kSettings{{
     {Setting::kPromise, "promise", "", kQuality,
      "what the stored errors cover: positions; texels: also texture coordinates; appearance: also normals", "position",
      false},
+    {Setting::kKeepLayers, "keep-layers", "", kAdvanced,
+     "keep surfaces that lie close above one another in order in coarse cuts; off: gaps are not looked for", "on",
+     false},
 }};
 
 /// A finite number above 0, all of the text.
@@ -245,6 +248,7 @@ builder::PipelineOptions options_of(const std::array<SettledWord, kSettingCount>
       value_in(builder::kAggregateChoiceNames, word(Setting::kAggregate)).value_or(AggregateChoice::kNamed);
   if (options.aggregate == AggregateChoice::kNamed) options.aggregate_names = word(Setting::kAggregate);
   options.promise = value_in(format::kPromiseNames, word(Setting::kPromise)).value_or(options.promise);
+  options.keep_layers = word(Setting::kKeepLayers) == "on";
   return options;
 }
 
@@ -279,6 +283,7 @@ std::vector<std::string> choices_of(Setting setting) {
     case Setting::kKeepTopology:
     case Setting::kLockBorders: return {"false", "true"};
     case Setting::kPromise: return all_names(format::kPromiseNames);
+    case Setting::kKeepLayers: return {"on", "off"};
     default: return {};
   }
 }

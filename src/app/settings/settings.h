@@ -40,8 +40,9 @@ enum class Setting : std::uint8_t {
   kLockBorders,
   kAggregate,
   kPromise,
+  kKeepLayers,
 };
-constexpr std::size_t kSettingCount = 19;
+constexpr std::size_t kSettingCount = 20;
 
 struct SettingInfo {
   Setting setting;

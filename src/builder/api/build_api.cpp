@@ -94,6 +94,7 @@ Result<builder::PipelineOptions> make_pipeline_options(const BuildOptions& optio
   pipeline.linear_colors = options.linear_colors;
   pipeline.keep_topology = options.keep_topology;
   pipeline.lock_borders = options.lock_borders;
+  pipeline.keep_layers = options.keep_layers;
   pipeline.aggregate = options.aggregate;
   pipeline.aggregate_names = options.aggregate_names;
   pipeline.promise = options.promise;

@@ -149,6 +149,7 @@ Result<BuildOptions> read_options(const meshlode_build_options& in) {
   out.linear_colors = in.linear_colors != 0;
   out.keep_topology = in.keep_topology != 0;
   out.lock_borders = in.lock_borders != 0;
+  out.keep_layers = in.keep_layers != 0;
   out.aggregate = static_cast<AggregateChoice>(in.aggregate);
   out.aggregate_names = text_of(in.aggregate_names);
   out.promise = static_cast<format::Promise>(in.promise);
@@ -244,6 +245,7 @@ void meshlode_build_defaults(meshlode_build_options* options) {
   options->repair = defaults.repair ? 1 : 0;
   options->linear_colors = defaults.linear_colors ? 1 : 0;
   options->keep_topology = defaults.keep_topology ? 1 : 0;
+  options->keep_layers = defaults.keep_layers ? 1 : 0;
   options->lock_borders = defaults.lock_borders ? 1 : 0;
   options->aggregate = static_cast<uint32_t>(defaults.aggregate);
   options->aggregate_names = nullptr;

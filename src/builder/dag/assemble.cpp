@@ -8,6 +8,7 @@
 #include "base/parallel.h"
 #include "base/release.h"
 #include "builder/dag/level_pool.h"
+#include "builder/gap_label.h"
 
 namespace meshlode::builder {
 
@@ -22,7 +23,7 @@ struct OrderedCluster {
       : triangles(source.triangle_count), wedges(source.triangle_count) {
     std::iota(triangles.begin(), triangles.end(), source.first_triangle);
     const auto before = [&](std::uint32_t a, std::uint32_t b) {
-      return pool.triangle_material[a] < pool.triangle_material[b];
+      return material_of(pool.triangle_material[a]) < material_of(pool.triangle_material[b]);
     };
     if (!std::is_sorted(triangles.begin(), triangles.end(), before)) {
       std::stable_sort(triangles.begin(), triangles.end(), before);
@@ -43,7 +44,7 @@ void write_cluster(const BuildPool& pool, const BuildCluster& source, const DagC
       dag.triangles[cluster.first_triangle + i][k] =
           static_cast<std::uint8_t>(ordered.wedges.add(pool.triangles[t][k]));
     }
-    dag.triangle_material[cluster.first_triangle + i] = pool.triangle_material[t];
+    dag.triangle_material[cluster.first_triangle + i] = material_of(pool.triangle_material[t]);
   }
   std::copy(ordered.wedges.numbers().begin(), ordered.wedges.numbers().end(),
             wedge_of_vertex.begin() + cluster.first_vertex);

@@ -9,6 +9,7 @@
 #include "base/local_ids.h"
 #include "base/parallel.h"
 #include "base/release.h"
+#include "builder/gap_label.h"
 
 namespace meshlode::builder {
 
@@ -250,7 +251,8 @@ BuildPool::ClusterUse BuildPool::use_of(ClusterId id) const {
   LocalIds wedges(c.triangle_count), used_positions(c.triangle_count), materials(1);
   for (std::uint32_t t = c.first_triangle; t < c.first_triangle + c.triangle_count; ++t) {
     for (const std::uint32_t wedge : triangles[t]) wedges.add(wedge);
-    if (t == c.first_triangle || triangle_material[t] != triangle_material[t - 1]) materials.add(triangle_material[t]);
+    const std::uint32_t material = material_of(triangle_material[t]);
+    if (t == c.first_triangle || material != material_of(triangle_material[t - 1])) materials.add(material);
   }
   for (const std::uint32_t wedge : wedges.numbers()) used_positions.add(wedge_position[wedge]);
   ClusterUse use;

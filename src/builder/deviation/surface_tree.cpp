@@ -18,7 +18,6 @@ namespace meshlode::builder {
 namespace {
 
 constexpr std::uint32_t kLeafSize = 4;
-constexpr std::size_t kMaxDepth = 16;  // 4^16 leaves
 
 // Of leaves that are made a thread keeps so many: what a group's queries come back to, in a quarter of a core's cache.
 constexpr std::size_t kCachedLeaves = 1024;
@@ -361,8 +360,8 @@ struct Entry {
   [[nodiscard]] std::uint32_t index() const { return 4 * (where >> 4U) + (key & 3U); }
   [[nodiscard]] std::uint32_t level() const { return (where & 15U) + 1; }
 };
-static_assert(kMaxDepth <= 16);
-using Stack = std::array<Entry, 3 * kMaxDepth + 8>;
+constexpr std::size_t kMaxLevels = 16;
+using Stack = std::array<Entry, 3 * kMaxLevels + 8>;
 
 struct PointLanes {
   Lanes x, y, z;

@@ -6,7 +6,10 @@
 // the surface, and it misses the least by about 1e-7 of the surface's extent.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -15,6 +18,7 @@
 #include "base/vec.h"
 #include "builder/deviation/capsules.h"
 #include "builder/deviation/four_triangles.h"
+#include "builder/deviation/lanes.h"
 #include "builder/deviation/point_distance.h"
 #include "builder/deviation/tree_slot.h"
 
@@ -74,6 +78,11 @@ class SurfaceTree {
     return test_leaf(point, slot.value / 4, best);
   }
 
+  /// Calls visit(slot) for triangles near a segment, all that it meets among them: each once, in an order that follows
+  /// from the tree.
+  template <class Visit>
+  void visit_along(const Vec3d& from, const Vec3d& to, const Visit& visit) const;
+
   /// Of the four triangles around a slot the one that is best for all three points: the distance of the farthest of
   /// them. The distance to a triangle is convex, so that whatever lies between the points is no farther.
   [[nodiscard]] Hit look_around(const std::array<Vec3f, 3>& points, TreeSlot slot) const;
@@ -118,6 +127,54 @@ class SurfaceTree {
   UnsetVector<Node> nodes_;
   std::vector<FourCapsules> capsules_;      ///< by node, where some vertex has very many triangles
   std::vector<std::uint32_t> level_start_;  ///< of nodes_, from the root; node i of a level has children 4i … 4i+3
+
+  static constexpr std::size_t kMaxDepth = 16;  ///< 4^16 leaves
+  /// In the frame: how far rounding may move a corner, a ray's end and a box's side, generously.
+  static constexpr float kRayGrace = 2e-6F;
 };
+
+template <class Visit>
+void SurfaceTree::visit_along(const Vec3d& from, const Vec3d& to, const Visit& visit) const {
+  if (nodes_.empty()) return;
+  const Vec3f start = to_frame(from), along = to_frame(to) - start;
+  std::array<Lanes, 3> origin, per_axis;
+  for (int axis = 0; axis < 3; ++axis) {
+    constexpr float kLeast = 1e-18F;  // a side that the ray runs along: its reciprocal is finite
+    const float d = along[axis];
+    origin[axis] = lanes(start[axis]);
+    per_axis[axis] = lanes(1.0F / (std::abs(d) > kLeast ? d : kLeast));
+  }
+  struct Entry {
+    std::uint32_t level, node;
+  };
+  std::array<Entry, 3 * kMaxDepth + 1> stack;
+  std::size_t size = 0;
+  stack[size++] = {0, 0};
+  const auto depth = static_cast<std::uint32_t>(level_start_.size() - 1);
+  while (size > 0) {
+    const Entry entry = stack[--size];
+    const Node& node = nodes_[level_start_[entry.level] + entry.node];
+    Lanes first = lanes(0.0F), last = lanes(1.0F);
+    for (int axis = 0; axis < 3; ++axis) {
+      const Lanes low = load_lanes(node.low[axis].data()), high = load_lanes(node.high[axis].data());
+      const Lanes a = (low - kRayGrace - origin[axis]) * per_axis[axis];
+      const Lanes b = (high + kRayGrace - origin[axis]) * per_axis[axis];
+      first = max_lanes(first, min_lanes(a, b));
+      last = min_lanes(last, max_lanes(a, b));
+    }
+    const LaneMask is_there = load_lanes(node.low[0].data()) <= load_lanes(node.high[0].data());
+    const LaneMask is_met = (first <= last) & is_there;
+    for (std::uint32_t k = 0; k < 4; ++k) {
+      if (is_met[k] == 0) continue;
+      const std::uint32_t child = 4 * entry.node + k;
+      if (entry.level + 1 < depth) {
+        stack[size++] = {entry.level + 1, child};
+      } else {
+        for (std::uint32_t slot = 4 * child; slot < std::min(4 * child + 4, this->size()); ++slot)
+          visit(TreeSlot(slot));
+      }
+    }
+  }
+}
 
 }  // namespace meshlode::builder

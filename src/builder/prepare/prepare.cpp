@@ -13,6 +13,7 @@
 #include "base/parallel.h"
 #include "base/try.h"
 #include "base/unset_vector.h"
+#include "builder/gap_label.h"
 #include "builder/prepare/corners.h"
 #include "builder/prepare/median_edge.h"
 #include "builder/prepare/open_border.h"
@@ -177,6 +178,25 @@ std::uint64_t count_pieces(const PreparedMesh& mesh) {
   return count;
 }
 
+/// Triangles that no ray started from take the narrowest gap of those around them.
+void spread_gaps(PreparedMesh& mesh) {
+  std::vector<std::uint8_t> at_position(mesh.positions.size(), 0);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const auto code = static_cast<std::uint8_t>(gap_code_of(mesh.triangle_material[t]));
+    for (const std::uint32_t wedge : mesh.triangles[t]) {
+      std::uint8_t& at = at_position[mesh.wedge_position[wedge]];
+      at = std::max(at, code);
+    }
+  }
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    std::uint32_t& label = mesh.triangle_material[t];
+    if (gap_code_of(label) != 0) continue;
+    std::uint8_t code = 0;
+    for (const std::uint32_t wedge : mesh.triangles[t]) code = std::max(code, at_position[mesh.wedge_position[wedge]]);
+    label = with_gap(label, code);
+  }
+}
+
 }  // namespace
 
 Result<GridPlan> plan_grid(const scene::SourceMesh& source, const PrepareOptions& options) {
@@ -200,9 +220,13 @@ Result<PreparedMesh> prepare_mesh(const scene::SourceMesh& source, const Attribu
   PreparedMesh mesh;
   mesh.name = source.name;
   mesh.layout = layout;
+  mesh.gap_reach = options.gaps.empty() ? 0.0 : options.gap_reach;
   count_source(source, mesh);
 
   Corners corners = gather_corners(source, layout);
+  for (std::size_t t = 0; t < options.gaps.size(); ++t) {
+    corners.materials[t] = with_gap(corners.materials[t], options.gaps[t]);
+  }
   if (!are_finite(corners)) return Error{ErrorCode::kInvalid, where, "a position is not finite"};
   mesh.dropped_degenerate = drop_undrawn(corners);
   if (corners.triangles.empty()) return mesh;
@@ -216,6 +240,7 @@ Result<PreparedMesh> prepare_mesh(const scene::SourceMesh& source, const Attribu
   weld(corners, points, is_used, options.keeps_flat_normals && layout.flat_normal, mesh);
   if (options.locks_borders) mesh.is_border_locked = find_open_border(corners, is_used, points, mesh.positions);
   mesh.piece_count = count_pieces(mesh);
+  if (!options.gaps.empty()) spread_gaps(mesh);
   return mesh;
 }
 

@@ -7,7 +7,9 @@
 // apart.
 #pragma once
 
+#include <cstdint>
 #include <optional>
+#include <span>
 
 #include <meshlode/result.h>
 
@@ -23,9 +25,11 @@ struct GridFrame {
 };
 
 struct PrepareOptions {
-  std::optional<GridFrame> frame;   ///< that of an asset, instead of one chosen from what is below
-  bool separates_needles = true;    ///< thin triangles that the grid would flatten (separate_needles.h)
-  bool locks_borders = false;       ///< PreparedMesh::is_border_locked
+  std::optional<GridFrame> frame;      ///< that of an asset, instead of one chosen from what is below
+  bool separates_needles = true;       ///< thin triangles that the grid would flatten (separate_needles.h)
+  bool locks_borders = false;          ///< PreparedMesh::is_border_locked
+  std::span<const std::uint8_t> gaps;  ///< MeshGaps::codes of the source mesh; empty: it has none
+  double gap_reach = 0.0;
   bool keeps_flat_normals = false;  ///< exact_normals, where the layout's are flat
   double grid_step = 0.0;           ///< object units; 0: chosen from the budgets below
   double position_error = 0.0;  ///< largest distance that the grid may move a vertex, object units; 0: the share below

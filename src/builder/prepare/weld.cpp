@@ -11,6 +11,7 @@
 #include "base/parallel.h"
 #include "base/release.h"
 #include "base/unset_vector.h"
+#include "builder/gap_label.h"
 #include "builder/prepare/flat_normal.h"
 
 namespace meshlode::builder {
@@ -141,8 +142,16 @@ VertexIds weld_vertices(const Corners& corners, std::span<const Vec3i> points, c
 /// A triangle in canonical form: rotated so that its smallest exact vertex comes first; sorted by these fields.
 struct CanonicalTriangle {
   std::array<std::uint32_t, 3> exact;  ///< ids of (exact position, attributes): what tells duplicates apart
-  std::uint32_t material;
-  auto operator<=>(const CanonicalTriangle&) const = default;
+  std::uint32_t material;              ///< and gap: duplicates differ in it at most, and the narrowest comes first
+  bool operator<(const CanonicalTriangle& other) const {
+    const auto key = [](const CanonicalTriangle& t) {
+      return std::tuple(t.exact, material_of(t.material), kNarrowestGap - gap_code_of(t.material));
+    };
+    return key(*this) < key(other);
+  }
+  [[nodiscard]] bool is_duplicate_of(const CanonicalTriangle& other) const {
+    return exact == other.exact && material_of(material) == material_of(other.material);
+  }
 };
 
 /// In order, and each once; counts what was there more often.
@@ -156,7 +165,9 @@ UnsetVector<CanonicalTriangle> weld_triangles(const Corners& corners, std::span<
     triangles[t] = {exact, corners.materials[t]};
   });
   tbb::parallel_sort(triangles.begin(), triangles.end());
-  const auto unique_end = std::unique(triangles.begin(), triangles.end());
+  const auto unique_end =
+      std::unique(triangles.begin(), triangles.end(),
+                  [](const CanonicalTriangle& a, const CanonicalTriangle& b) { return a.is_duplicate_of(b); });
   duplicates = static_cast<std::uint64_t>(triangles.end() - unique_end);
   triangles.erase(unique_end, triangles.end());
   return triangles;

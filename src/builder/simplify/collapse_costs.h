@@ -14,6 +14,7 @@
 #include "builder/simplify/attribute_scales.h"
 #include "builder/simplify/collapse_mesh.h"
 #include "builder/simplify/collapse_star.h"
+#include "builder/simplify/gap_weights.h"
 #include "builder/simplify/group_locks.h"
 #include "builder/simplify/group_places.h"
 #include "builder/simplify/placement.h"
@@ -65,7 +66,7 @@ class CollapseCosts {
   /// Of an edge at a hub, that is not weighed: it is refused when it comes up.
   static constexpr double kHubCost = 1e30;
 
-  void add_faces();
+  void add_faces(const SimplifyInput& input);
   [[nodiscard]] std::optional<double> add_attributes(const CollapseMesh::Ends& ends, const Vec3d& given,
                                                      BasicQuadric<Real>& total);
 
@@ -88,11 +89,12 @@ CollapseCosts<Numbers, C>::CollapseCosts(const SimplifyInput& input, const Simpl
       only_wedge_(mesh),
       surface_(input.positions.size(), options.border_weight),
       attributes_(input, attribute_scales(input, options, mesh, places), only_wedge_.has_seams()) {
-  add_faces();
+  add_faces(input);
 }
 
 template <class Numbers, std::size_t C>
-void CollapseCosts<Numbers, C>::add_faces() {
+void CollapseCosts<Numbers, C>::add_faces(const SimplifyInput& input) {
+  const GapWeights weights(input);
   for (std::uint32_t t = 0; t < mesh_.triangle_count(); ++t) {
     if (!mesh_.is_alive(t)) continue;
     const Face face = face_of(mesh_, places_, t);
@@ -101,7 +103,8 @@ void CollapseCosts<Numbers, C>::add_faces() {
     if (has_attributes()) {
       of_attributes = attributes_.add_face({mesh_.wedge(3 * t), mesh_.wedge(3 * t + 1), mesh_.wedge(3 * t + 2)}, face);
     }
-    surface_.add_face({mesh_.vertex(3 * t), mesh_.vertex(3 * t + 1), mesh_.vertex(3 * t + 2)}, face, of_attributes);
+    surface_.add_face({mesh_.vertex(3 * t), mesh_.vertex(3 * t + 1), mesh_.vertex(3 * t + 2)}, face, of_attributes,
+                      weights.of(input.triangle_material[t]));
   }
 }
 

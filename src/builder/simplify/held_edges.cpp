@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "builder/gap_label.h"
 #include "builder/simplify/edge_uses.h"
 
 namespace meshlode::builder {
@@ -25,7 +26,9 @@ double weight_between(const SimplifyInput& input, const SimplifyOptions& options
                       std::span<const EdgeUse> pair) {
   const EdgeUse& x = pair[0];
   const EdgeUse& y = pair[1];
-  if (input.triangle_material[x.corner / 3] != input.triangle_material[y.corner / 3]) return options.border_weight;
+  if (material_of(input.triangle_material[x.corner / 3]) != material_of(input.triangle_material[y.corner / 3])) {
+    return options.border_weight;
+  }
   if (input.layout.stride() <= input.layout.uv_offset()) return 0.0;
   const auto wedge_at = [&](const EdgeUse& use, std::uint32_t vertex) {
     return mesh.wedge(mesh.vertex(use.corner) == vertex ? use.corner : CollapseMesh::next_in_triangle(use.corner));

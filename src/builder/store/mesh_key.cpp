@@ -44,9 +44,10 @@ class KeyHasher {
 // purpose.
 
 void add_mesh(KeyHasher& key, const scene::SourceMesh& mesh) {
-  const auto& [name, primitives, drops, repairs] = mesh;
-  static_cast<void>(name);     // written beside the mesh
-  static_cast<void>(repairs);  // reported; the triangles are as they are
+  const auto& [name, primitives, drops, repairs, is_deformed] = mesh;
+  static_cast<void>(name);         // written beside the mesh
+  static_cast<void>(is_deformed);  // the gaps say what came of it
+  static_cast<void>(repairs);      // reported; the triangles are as they are
   const auto& [repaired] = drops;
   key.value(repaired);
   key.value(std::uint64_t{primitives.size()});
@@ -99,7 +100,7 @@ void add_own_options(KeyHasher& key, const MeshOptions& own) {
 }
 
 void add_scene_options(KeyHasher& key, const SceneOptions& options) {
-  const auto& [preset, codec, strip_effort, partition_seed, repair, linear_colors, promise, keep_topology,
+  const auto& [preset, codec, strip_effort, partition_seed, repair, linear_colors, promise, keep_topology, keep_layers,
                max_cluster_triangles, max_cluster_vertices, group_clusters, max_memory, mesh_store, looks, hooks,
                mesh_options] = options;
   key.value(preset);
@@ -112,6 +113,7 @@ void add_scene_options(KeyHasher& key, const SceneOptions& options) {
   const std::string study = hooks != nullptr ? hooks->record : std::string();
   key.list(std::vector<char>(study.begin(), study.end()));
   static_cast<void>(strip_effort);   // EncodeOptions has what it came to
+  static_cast<void>(keep_layers);    // the gaps say what came of it
   static_cast<void>(codec);          // of the pages on disk, later
   static_cast<void>(repair);         // the triangles are as they are
   static_cast<void>(linear_colors);  // the same
@@ -124,7 +126,8 @@ void add_scene_options(KeyHasher& key, const SceneOptions& options) {
 }  // namespace
 
 Hash128 mesh_key(const scene::SourceMesh& mesh, const AttributeLayout& layout, const EncodeOptions& encode,
-                 const MeshOptions& own, const SceneOptions& options, std::span<const TexelExtents> extents) {
+                 const MeshOptions& own, const SceneOptions& options, std::span<const TexelExtents> extents,
+                 const MeshGaps& gaps) {
   KeyHasher key;
   for (const scene::Primitive& primitive : mesh.primitives) {
     if (primitive.material.value >= extents.size()) continue;
@@ -135,6 +138,9 @@ Hash128 mesh_key(const scene::SourceMesh& mesh, const AttributeLayout& layout, c
   add_layout(key, layout);
   add_encoding(key, encode);
   add_mesh(key, mesh);
+  const auto& [reach, codes] = gaps;
+  key.value(codes.empty() ? 0.0 : reach);
+  key.list(codes);
   return key.digest();
 }
 

@@ -6,6 +6,7 @@
 
 #include "base/hash.h"
 #include "builder/encode/encode.h"
+#include "builder/layers/find_gaps.h"
 #include "builder/options.h"
 #include "builder/plan/texel_sizes.h"
 #include "builder/prepared.h"
@@ -14,10 +15,11 @@
 namespace meshlode::builder {
 
 /// Over the mesh's triangles, attributes and materials' ids, and over what the plan and the textures made of the
-/// options for it: a material's colour, a texture's pixels, other meshes, nodes and names are not in it. Bits, not
-/// values: -0 is another mesh than 0. `extents`: of the scene's materials, where more than positions is promised.
+/// options for it: a material's colour, a texture's pixels, other meshes, nodes and names are not in it, but for the
+/// gaps to them. Bits, not values: -0 is another mesh than 0. `extents`: of the scene's materials, where more than
+/// positions is promised.
 [[nodiscard]] Hash128 mesh_key(const scene::SourceMesh& mesh, const AttributeLayout& layout,
                                const EncodeOptions& encode, const MeshOptions& own, const SceneOptions& options,
-                               std::span<const TexelExtents> extents = {});
+                               std::span<const TexelExtents> extents = {}, const MeshGaps& gaps = {});
 
 }  // namespace meshlode::builder

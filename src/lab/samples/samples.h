@@ -110,6 +110,13 @@ struct SampleFile {
 /// As make_tree_wood() and make_tree_leaves().
 [[nodiscard]] SampleFile make_painted_tree_file(std::uint32_t around = 48, std::uint32_t leaves = 2400);
 
+/// Kinds of scenes whose layers lie closely above one another: "plate" in a recess, "decal", "shells" in each other,
+/// "cloth" over a body, "coins" in a tray, "facade" with inset windows, "leaves" over a branch.
+[[nodiscard]] std::vector<std::string> layered_kinds();
+/// One of them, a mesh and a material for each layer, the deepest first. Some 10,000 triangles with `cells` 48; they
+/// grow with its square. \pre one of layered_kinds(), cells >= 16
+[[nodiscard]] SampleFile make_layered_file(const std::string& kind, std::uint64_t seed = 1, std::uint32_t cells = 48);
+
 /// The names of data/, in order.
 [[nodiscard]] std::vector<std::string> sample_names();
 /// The bytes of one of them. \pre name is one of sample_names()

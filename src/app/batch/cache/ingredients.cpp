@@ -86,7 +86,7 @@ std::string settings_text(const builder::PipelineOptions& options, const scene::
   const auto& [error_tier, attributes, keep, drop, grid_step, position_error, normal_error, uv_error,
                uv_error_is_texels, uv_error_is_default, aggregate, aggregate_names, lock_borders] =
       static_cast<const builder::MeshOptions&>(options);
-  const auto& [preset, codec, strip_effort, partition_seed, repair, linear_colors, promise, keep_topology,
+  const auto& [preset, codec, strip_effort, partition_seed, repair, linear_colors, promise, keep_topology, keep_layers,
                max_cluster_triangles, max_cluster_vertices, group_clusters, max_memory, mesh_store, looks, hooks,
                mesh_options] = static_cast<const builder::SceneOptions&>(options);
   const auto& [import_repair, scene, files_read, max_decoded, may_lack_images, allow_outside, import_linear] = import;
@@ -116,6 +116,7 @@ std::string settings_text(const builder::PipelineOptions& options, const scene::
       {"promise", format::name_of(promise)},
       {"keep-topology", text_of(keep_topology)},
       {"lock-borders", text_of(lock_borders)},
+      {"keep-layers", text_of(keep_layers)},
       {"cluster-triangles", text_of(std::uint64_t{max_cluster_triangles})},
       {"cluster-vertices", text_of(std::uint64_t{max_cluster_vertices})},
       {"group-clusters", text_of(std::uint64_t{group_clusters})},

@@ -185,6 +185,7 @@ Status read_meshes(const GltfAsset& asset, const ImportOptions& options, DecodeB
       mesh.primitives.push_back(std::move(**primitive));
     }
     const std::string what = "mesh " + std::to_string(m) + " ";
+    mesh.is_deformed = has_targets;
     if (has_targets) scene.left_out.push_back({what + "morph targets", "only the base shape is built"});
     extensions.erase("KHR_draco_mesh_compression");
     extensions.erase("KHR_materials_variants");

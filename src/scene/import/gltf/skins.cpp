@@ -186,6 +186,7 @@ class SkinSettler {
         if (Status copied = copy_mesh(m, s); !copied) return copied;
         how.mesh = static_cast<std::uint32_t>(scene_.meshes.size() - 1);
       }
+      scene_.meshes[how.mesh].is_deformed = true;
       if (!bake_mesh(scene_.meshes[how.mesh], weights_[m], *matrices_[s])) {
         return asset_.invalid(skin_path(s), "a vertex of mesh " + std::to_string(m) + " is not finite in its pose");
       }
