@@ -54,6 +54,7 @@ void print_line(const app::JobResult& r) {
   } else {
     std::fprintf(stderr, "%.2f s (%.0f triangles/s)\n", r.seconds,
                  r.seconds > 0.0 ? static_cast<double>(r.facts.triangles) / r.seconds : 0.0);
+    if (!r.decided.empty()) std::fprintf(stderr, "  decided: %s\n", plain(r.decided).c_str());
   }
 }
 

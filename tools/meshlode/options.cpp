@@ -21,6 +21,7 @@
 #include "base/byte_size.h"
 #include "base/nearest_name.h"
 #include "base/printable.h"
+#include "format/names.h"
 
 namespace meshlode::cli {
 
@@ -63,6 +64,8 @@ std::string value_fault(const std::string& word) {
 std::string choice_fault(const std::string& word, const std::vector<std::string>& choices) {
   if (std::find(choices.begin(), choices.end(), word) != choices.end()) return "";
   if (word.empty()) return "needs a value: " + list_of_choices(choices);
+  const bool is_of_codecs = choices == all_names(format::kWrittenCodecNames);
+  if (is_of_codecs && value_in(format::kCodecNames, word)) return format::not_written(word);
   return unknown_choice(printable(word, 64), choices);
 }
 

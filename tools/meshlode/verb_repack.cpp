@@ -60,7 +60,7 @@ int run_repack(const Verb& verb, std::span<char* const> args) {
   OptionParser parser(verb);
   parser.add_positional("FILE", o.input, "a .lode asset");
   parser.add_value("-o,--output", o.output, "the asset to write");
-  parser.add_value("--codec", o.codec, "how pages are stored on disk", all_names(format::kCodecNames));
+  parser.add_value("--codec", o.codec, "how pages are stored on disk", all_names(format::kWrittenCodecNames));
   add_jobs_option(parser, o.jobs);
   add_max_decoded_option(parser, o.max_decoded);
   add_output_options(parser, o.out);
@@ -68,7 +68,7 @@ int run_repack(const Verb& verb, std::span<char* const> args) {
   if (!o.output) return print_error({ErrorCode::kUsage, "-o", "say where the asset goes"});
   if (!o.codec) return print_error({ErrorCode::kUsage, "--codec", "say how pages are to be stored"});
   if (const Status name = check_output_name("-o", *o.output, ".lode"); !name) return print_error(name.error());
-  const std::optional<format::Codec> codec = value_in(format::kCodecNames, *o.codec);
+  const std::optional<format::Codec> codec = value_in(format::kWrittenCodecNames, *o.codec);
   const Result<std::uint64_t> max_decoded = parse_max_decoded(o.max_decoded);
   if (!max_decoded) return print_error(max_decoded.error());
 

@@ -34,7 +34,7 @@ constexpr std::array<SettingInfo, kSettingCount> kSettings{{
      true},
     {Setting::kNormalError, "normal-error", "the largest angle a stored normal may be off, degrees", "0.1", true},
     {Setting::kUvError, "uv-error", "auto, or the largest move of a UV: UV units, or 0.25px for texels", "auto", true},
-    {Setting::kCodec, "codec", "disk codec of the pages", "none", false},
+    {Setting::kCodec, "codec", "disk codec of the pages", "strips", false},
     {Setting::kStripEffort, "strip-effort", "how long fewer bytes a triangle are looked for; auto: as the preset",
      "auto", false},
     {Setting::kClusterTriangles, "cluster-triangles", "the most triangles of a cluster, 1 to 256", "128", false},
@@ -51,9 +51,10 @@ constexpr std::array<SettingInfo, kSettingCount> kSettings{{
      "open borders keep every vertex in every cut, so that tiles built apart with one --grid abut, for more triangles",
      "false", true},
     {Setting::kAggregate, "aggregate",
-     "what is thinned out by coverage, not by distance: nothing (never), meshes and parts of many small loose pieces "
-     "(auto), all small pieces (always), or meshes and materials by name, comma by comma",
-     "never", true},
+     "what is thinned out by coverage, not by distance: masked cards, which are meshes and parts of many small loose "
+     "pieces with an alpha mask (masked), those without a mask too (auto), all small pieces (always), nothing (never), "
+     "or meshes and materials by name, comma by comma",
+     "masked", true},
     {Setting::kPromise, "promise",
      "what errors are of: positions; texels, with texture coordinates; appearance, with normals too", "position",
      false},
@@ -205,7 +206,7 @@ builder::PipelineOptions options_of(const std::array<SettledWord, kSettingCount>
   options.preset = value_in(builder::kPresetNames, word(Setting::kPreset)).value_or(options.preset);
   options.error_tier = value_in(format::kErrorTierNames, word(Setting::kErrorTier))
                            .value_or(builder::settings_of(options.preset).error_tier);
-  options.codec = value_in(format::kCodecNames, word(Setting::kCodec)).value_or(options.codec);
+  options.codec = value_in(format::kWrittenCodecNames, word(Setting::kCodec)).value_or(options.codec);
   options.strip_effort =
       value_in(builder::kStripEffortNames, word(Setting::kStripEffort)).value_or(options.strip_effort);
   options.attributes =
@@ -258,7 +259,7 @@ std::vector<std::string> choices_of(Setting setting) {
     }
     case Setting::kPreset: return all_names(builder::kPresetNames);
     case Setting::kAttributes: return all_names(builder::kAttributeChoiceNames);
-    case Setting::kCodec: return all_names(format::kCodecNames);
+    case Setting::kCodec: return all_names(format::kWrittenCodecNames);
     case Setting::kStripEffort: return all_names(builder::kStripEffortNames);
     case Setting::kRepair:
     case Setting::kLinearColors:
@@ -273,7 +274,8 @@ std::string find_fault(Setting setting, std::string_view word) {
   const std::vector<std::string> choices = choices_of(setting);
   if (!choices.empty()) {
     if (std::find(choices.begin(), choices.end(), word) != choices.end()) return {};
-    return unknown_choice(word, choices);
+    const bool was_written = setting == Setting::kCodec && value_in(format::kCodecNames, word);
+    return was_written ? format::not_written(word) : unknown_choice(word, choices);
   }
   switch (setting) {
     case Setting::kKeep:
@@ -287,7 +289,7 @@ std::string find_fault(Setting setting, std::string_view word) {
       return word == "auto" || parse_positive(word) ? "" : wanted("auto or a distance above 0 in mesh units", word);
 
     case Setting::kAggregate:
-      return !word.empty() ? "" : "give never, auto, always, or names of meshes and materials, comma by comma";
+      return !word.empty() ? "" : "give masked, never, auto, always, or names of meshes and materials, comma by comma";
     case Setting::kClusterTriangles:
       return parse_cluster_triangles(word) ? "" : wanted("a whole number of triangles from 1 to 256", word);
     case Setting::kGroupClusters:
