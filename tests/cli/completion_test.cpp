@@ -7,19 +7,41 @@
 
 #include <gtest/gtest.h>
 
+#include "meshlode/help_text.h"
 #include "meshlode/man_page.h"
 
 namespace meshlode::cli {
 namespace {
 
 std::vector<VerbHelp> verbs() {
-  OptionInfo help{{"-h", "--help"}, "", {}, "print this", false, false, false};
-  OptionInfo output{{"-o", "--output"}, "TEXT", {}, "it's [the] \"file\": 5\\6", false, false, false};
-  OptionInfo choice{{"--way"}, "TEXT", {"left", "right"}, "which", false, false, false};
-  OptionInfo input{{"input"}, "TEXT", {}, ".hidden files too", true, true, true};
-  OptionInfo shell{{"shell"}, "TEXT", {"one", "two"}, "'quoted'", true, false, false};
-  return {{"make", "what's made: all", "meshlode make a-b\n  meshlode make c", {help, output, choice, input}},
-          {"say", "one of two", "meshlode say one", {help, shell}}};
+  const OptionInfo help{.names = {"-h", "--help"}, .help = "print this", .group = kGeneral};
+  const OptionInfo output{
+      .names = {"-o", "--output"}, .value = "FILE", .help = "it's [the] \"file\": 5\\6", .group = "Out"};
+  const OptionInfo choice{.names = {"--way"},
+                          .value = "left|right",
+                          .choices = {"left", "right"},
+                          .help = "which",
+                          .usual = "left",
+                          .group = "Out"};
+  const OptionInfo input{.names = {"input"},
+                         .value = "TEXT",
+                         .help = ".hidden files too",
+                         .group = kArguments,
+                         .is_positional = true,
+                         .is_required = true,
+                         .is_many = true};
+  const OptionInfo shell{.names = {"shell"},
+                         .value = "TEXT",
+                         .choices = {"one", "two"},
+                         .help = "'quoted'",
+                         .group = kArguments,
+                         .is_positional = true};
+  return {{"make",
+           "what's made: all",
+           "Makes.\n\n.More",
+           "meshlode make a-b\n  meshlode make c",
+           {help, output, choice, input}},
+          {"say", "one of two", "Says.", "meshlode say one", {help, shell}}};
 }
 
 bool has(const std::string& text, const std::string& part) {
@@ -38,9 +60,9 @@ TEST(Completion, BashKnowsVerbsOptionsAndChoices) {
 TEST(Completion, ZshQuotesWhatIsMarkupThere) {
   const std::string script = zsh_completion(verbs());
   EXPECT_TRUE(has(script, R"('make:what'\''s made\: all')")) << script;
-  EXPECT_TRUE(has(script, R"('(-o --output)--output=[it'\''s \[the\] "file"\: 5\\6]:TEXT:_files')")) << script;
+  EXPECT_TRUE(has(script, R"('(-o --output)--output=[it'\''s \[the\] "file"\: 5\\6]:FILE:_files')")) << script;
   EXPECT_TRUE(has(script, R"('(-o --output)-o+[it)")) << script;
-  EXPECT_TRUE(has(script, "'--way=[which]:TEXT:(left right)'")) << script;
+  EXPECT_TRUE(has(script, "'--way=[which]:left|right:(left right)'")) << script;
   EXPECT_TRUE(has(script, "'*:input:_files'")) << script;
   EXPECT_TRUE(has(script, "'::shell:(one two)'")) << script;
 }
@@ -56,13 +78,42 @@ TEST(Completion, FishQuotesWhatIsMarkupThere) {
 TEST(ManPage, ShowsOptionsAsTheyAreTyped) {
   const std::string page = verb_man_page(verbs()[0], verbs(), "meshlode 9");
   EXPECT_TRUE(page.starts_with(".TH MESHLODE\\-MAKE 1 \"\" \"meshlode 9\"")) << page;
-  EXPECT_TRUE(has(page, "\\fBmeshlode make\\fR [\\fIoptions\\fR] \\fIinput\\fR ...\n")) << page;
-  EXPECT_TRUE(has(page, "\\fB\\-o\\fR, \\fB\\-\\-output\\fR \\fITEXT\\fR\nit\\(aqs [the] \"file\": 5\\e6\n")) << page;
-  EXPECT_TRUE(has(page, "One of \\fBleft\\fR, \\fBright\\fR.\n")) << page;
+  EXPECT_TRUE(has(page, "\\fBmeshlode make\\fR [\\fIOPTIONS\\fR] \\fIinput\\fR ...\n")) << page;
+  EXPECT_TRUE(has(page, "\\fB\\-o\\fR, \\fB\\-\\-output\\fR \\fIFILE\\fR\nit\\(aqs [the] \"file\": 5\\e6\n")) << page;
+  EXPECT_TRUE(has(page, "\\fB\\-\\-way\\fR \\fIleft|right\\fR\nwhich (default: left)\n")) << page;
+  EXPECT_TRUE(has(page, ".SH DESCRIPTION\nMakes.\n.PP\n\\&.More\n.SH ARGUMENTS\n")) << page;
+  EXPECT_LT(page.find(".SS Out\n"), page.find(".SS General\n")) << page;
   EXPECT_TRUE(has(page, "\n\\&.hidden files too\n")) << "no request of roff: " << page;
   EXPECT_TRUE(has(page, ".nf\nmeshlode make a\\-b\nmeshlode make c\n.fi\n")) << page;
   EXPECT_TRUE(has(page, ".BR meshlode (1),\n.BR meshlode\\-say (1)\n")) << page;
   EXPECT_TRUE(has(verb_man_page(verbs()[1], verbs(), ""), "\n\\&\\(aqquoted\\(aq\n"));
+}
+
+TEST(HelpText, ListsExamplesThenGroupsAndFillsLines) {
+  VerbHelp verb = verbs()[0];
+  verb.options[1].help = std::string(60, 'x') + " " + std::string(60, 'y');
+  EXPECT_EQ(help_text(verb),
+            "What's made: all.\n\nUsage: meshlode make [OPTIONS] input...\n\nExamples:\n  meshlode make a-b\n"
+            "  meshlode make c\n\nArguments:\n  input...                   .hidden files too\n\nOut:\n"
+            "  -o, --output FILE          " +
+                std::string(60, 'x') + "\n" + std::string(29, ' ') + std::string(60, 'y') +
+                "\n      --way left|right       which (default: left)\n\nGeneral:\n"
+                "  -h, --help                 print this\n\n"
+                "Exit status: 0 ok, 1 usage, 2 input or output failed (an interrupt too), 3 invalid input, 4 build\n"
+                "  failed, 5 unsupported, 6 a check failed\nManual: man meshlode-make, docs/reference/cli/make.md\n");
+}
+
+TEST(HelpText, KeepsADefaultInOneLine) {
+  EXPECT_EQ(fill_lines("a b (default: c)", "", 2, 13), "a b\n  (default: c)\n");
+  EXPECT_EQ(fill_lines("longer  than\nall", "", 0, 4), "longer\nthan\nall\n");
+  EXPECT_EQ(fill_lines("", "", 0, 4), "\n");
+}
+
+TEST(ReferencePage, QuotesMarkup) {
+  const std::string page = reference_page(verbs()[0]);
+  EXPECT_TRUE(has(page, "- `-o, --output FILE`: it's \\[the] \"file\": 5\\\\6\n")) << page;
+  EXPECT_TRUE(has(page, "\n## Out\n\n")) << page;
+  EXPECT_TRUE(has(reference_index(verbs()), "| [say](say.md) | one of two |\n"));
 }
 
 TEST(ManPage, OfTheProgramHasEveryVerb) {

@@ -14,7 +14,7 @@ namespace {
 int run_nothing(const Verb&, std::span<char* const>) {
   return 0;
 }
-const Verb kTestVerb{"test", "a verb of this test", "meshlode test a", run_nothing};
+const Verb kTestVerb{"test", "a verb of this test", "Does nothing.", "meshlode test a", run_nothing};
 
 struct Parsed {
   std::optional<int> exit_code;
@@ -124,7 +124,7 @@ TEST(OutputName, AnExtensionOfAnotherFormatIsRefused) {
     EXPECT_FALSE(check_output_name("-o", name, ".png")) << name;
   }
   EXPECT_EQ(check_output_name("-o", "x.gltf", ".glb").error().detail,
-            "what is written is a .glb file, not a .gltf file (got 'x.gltf'); give a name that ends in .glb");
+            "writes a .glb file, not a .gltf file (got 'x.gltf'); choose a name that ends in .glb");
 }
 
 TEST(OutputName, AnExtensionOfAKnownFormatIsRefusedForText) {
@@ -138,30 +138,41 @@ TEST(OptionParser, ListsItsOptionsInsteadOfParsing) {
   OptionTable table;
   Verb verb = kTestVerb;
   verb.listed_options = &table;
-  std::string file, choice;
+  std::string file, choice = "b";
+  double size = 0.25;
   std::vector<std::string> files;
   std::optional<std::string> maybe;
   bool flag = false;
   OptionParser parser(verb);
   parser.add_positional("file", file, "a file");
+  parser.group("Some");
   parser.add_value("-c,--choice", choice, "one of two", {"a", "b"});
+  parser.add_value("--size WxH", size, "both");
   parser.add_flag("--flag", flag, "on");
   parser.add_positional("maybe", maybe, "or none", {"x"});
   parser.add_positionals("more", files, "files");
   EXPECT_EQ(parser.parse({}), 0) << "nothing is missed";
-  ASSERT_EQ(table.size(), 6U);
+  ASSERT_EQ(table.size(), 8U);
   EXPECT_EQ(table[0].names, (std::vector<std::string>{"-h", "--help"}));
   EXPECT_EQ(table[0].value, "");
-  EXPECT_EQ(table[1].names, std::vector<std::string>{"file"});
-  EXPECT_TRUE(table[1].is_positional && table[1].is_required && !table[1].is_many);
-  EXPECT_EQ(table[2].names, (std::vector<std::string>{"-c", "--choice"}));
-  EXPECT_EQ(table[2].value, "TEXT");
-  EXPECT_EQ(table[2].choices, (std::vector<std::string>{"a", "b"}));
-  EXPECT_EQ(table[2].help, "one of two");
-  EXPECT_EQ(table[3].value, "") << "a flag";
-  EXPECT_TRUE(table[4].is_positional && !table[4].is_required);
-  EXPECT_EQ(table[4].choices, std::vector<std::string>{"x"});
-  EXPECT_TRUE(table[5].is_positional && table[5].is_many);
+  EXPECT_EQ(table[1].names, std::vector<std::string>{"--color"});
+  EXPECT_EQ(table[1].group, kGeneral);
+  EXPECT_EQ(table[2].names, std::vector<std::string>{"file"});
+  EXPECT_TRUE(table[2].is_positional && table[2].is_required && !table[2].is_many);
+  EXPECT_EQ(table[2].group, kArguments);
+  EXPECT_EQ(table[3].names, (std::vector<std::string>{"-c", "--choice"}));
+  EXPECT_EQ(table[3].value, "a|b");
+  EXPECT_EQ(table[3].choices, (std::vector<std::string>{"a", "b"}));
+  EXPECT_EQ(table[3].help, "one of two");
+  EXPECT_EQ(table[3].group, "Some");
+  EXPECT_EQ(table[3].usual, "b");
+  EXPECT_EQ(table[4].value, "WxH");
+  EXPECT_EQ(table[4].usual, "0.25");
+  EXPECT_EQ(help_with_default(table[4]), "both (default: 0.25)");
+  EXPECT_EQ(table[5].value, "") << "a flag";
+  EXPECT_TRUE(table[6].is_positional && !table[6].is_required);
+  EXPECT_EQ(table[6].choices, std::vector<std::string>{"x"});
+  EXPECT_TRUE(table[7].is_positional && table[7].is_many);
 }
 
 TEST(JobLimit, RunsTheWorkOnce) {

@@ -72,7 +72,7 @@ void read_manifest(Bytes bytes) {
   const auto again = app::parse_manifest(first);
   require(again && written(*again) == first, "a manifest is not read as it was written");
   static_cast<void>(app::junit_xml(manifest->results));
-  static_cast<void>(app::summary_table(manifest->results));
+  static_cast<void>(app::summary_text(manifest->results));
   const auto merged = app::merge_shards({{"one", *manifest}});
   require(!merged || (manifest->shard && merged->results.size() == manifest->shard->batch_jobs),
           "a batch has another number of files");

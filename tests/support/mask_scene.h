@@ -15,9 +15,9 @@ struct MaskSceneOptions {
   float cutoff = 0.5F, factor = 1.0F;
   bool has_vertex_alpha = false;  ///< falls from 1 to 0 across a card
   bool has_texture = true;
-  std::string transform;            ///< KHR_texture_transform's JSON object; empty: none
-  std::vector<std::uint8_t> image;  ///< a file; empty: mask_texture() as PNG
-  std::uint32_t cells = 6;          ///< along a card's side
+  std::string transform{};            ///< KHR_texture_transform's JSON object; empty: none
+  std::vector<std::uint8_t> image{};  ///< a file; empty: mask_texture() as PNG
+  std::uint32_t cells = 6;            ///< along a card's side
 };
 
 /// Alpha of texel (x, y) of the generated texture: every value from 0 to 255 occurs.

@@ -9,7 +9,7 @@ namespace meshlode::cli {
 
 std::vector<std::string> BatchWords::outputs() const {
   std::vector<std::string> paths;
-  for (const std::string* path : {&junit, &manifest, &depfile}) {
+  for (const std::string* path : {&junit, &manifest, &depfile, &report}) {
     if (!path->empty()) paths.push_back(*path);
   }
   return paths;
@@ -32,23 +32,27 @@ Result<std::uint64_t> BatchWords::limit() const {
 }
 
 void add_batch_options(OptionParser& parser, BatchWords& words) {
-  parser.add_flag("--fail-fast", words.fail_fast, "skip what comes after the first file that fails");
-  parser.add_flag(
-      "--strict", words.strict,
-      "errors: a missing texture, which else is left out, and a name of --aggregate that nothing has, nothing to draw, "
-      "triangles missing, which else are warnings");
-  parser.add_value("--junit", words.junit, "write a JUnit XML file, a test case a scene");
-  parser.add_value("--manifest", words.manifest, "write statuses, hashes, seconds and bytes of all files as JSON");
-  parser.add_value("--depfile", words.depfile, "write what each asset depends on, for Make and Ninja");
-  parser.add_value("--cache", words.cache,
-                   "folder of what was built before, shared by runs and machines; "
-                   "$MESHLODE_CACHE where not given");
-  parser.add_value("--cache-limit", words.cache_limit, "what the cache keeps at most, such as 20GiB; or none");
-  parser.add_flag("--no-cache", words.no_cache, "use no cache, whatever $MESHLODE_CACHE says");
-  parser.add_value(
-      "--shard", words.shard,
-      "I/N, such as 3/8: only the I-th of N shares of about equal cost; merge makes one manifest of theirs");
-  parser.add_flag("--dry-run", words.dry_run, "write nothing; say what would be built, and why");
+  parser.add_value("--report FILE", words.report,
+                   "write counts and times as JSON, as --format json prints them (default: none)");
+  parser.add_value("--manifest FILE", words.manifest,
+                   "write status, hashes, time and size of each file as JSON (default: none)");
+  parser.add_value("--junit FILE", words.junit, "write a JUnit file with one test case per scene (default: none)");
+  parser.add_value("--depfile FILE", words.depfile,
+                   "write the files that each asset depends on, for Make and Ninja (default: none)");
+  parser.add_flag("--dry-run", words.dry_run, "print what would be built and why; write nothing");
+  parser.group("Batches");
+  parser.add_value("--cache FOLDER", words.cache,
+                   "reuse earlier builds; runs and machines may share it (default: $MESHLODE_CACHE, else none)");
+  parser.add_flag("--no-cache", words.no_cache, "use no cache, even if $MESHLODE_CACHE is set");
+  parser.add_value("--cache-limit SIZE", words.cache_limit,
+                   "remove the least recently used entries beyond SIZE, such as 20GiB");
+  parser.add_value("--shard I/N", words.shard,
+                   "build only share I of N shares of about equal cost, such as 3/8; 'meshlode merge' joins their "
+                   "manifests (default: everything)");
+  parser.add_flag("--fail-fast", words.fail_fast, "stop after the first file that fails");
+  parser.add_flag("--strict", words.strict,
+                  "make errors of these warnings: a missing texture, an unknown name in --aggregate, nothing to draw, "
+                  "missing triangles");
 }
 
 }  // namespace meshlode::cli

@@ -14,12 +14,12 @@ namespace meshlode::cli {
 
 struct BatchWords {
   bool fail_fast = false, dry_run = false, strict = false, no_cache = false;
-  std::string junit, manifest, depfile;  ///< paths, empty for none
-  std::string cache;                     ///< a folder; empty: $MESHLODE_CACHE, or none
+  std::string junit, manifest, depfile, report;  ///< paths, empty for none
+  std::string cache;                             ///< a folder; empty: $MESHLODE_CACHE, or none
   std::string cache_limit = "none";
   std::string shard;  ///< "3/8"; empty: the whole batch
 
-  /// Those of the three files that are written.
+  /// Those of the four files that are written.
   [[nodiscard]] std::vector<std::string> outputs() const;
   /// The folder in use, empty for none.
   [[nodiscard]] std::string cache_folder() const;

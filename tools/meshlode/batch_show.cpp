@@ -7,8 +7,12 @@
 #include <unistd.h>
 
 #include "app/batch/jobs/weigh.h"
+#include "app/doctor/diagnosis.h"
+#include "app/report/fold_reasons.h"
+#include "base/printable.h"
 #include "builder/stage_options.h"
 #include "options.h"
+#include "terminal.h"
 
 namespace meshlode::cli {
 
@@ -40,22 +44,21 @@ void print_repairs(const app::JobFacts& facts) {
   if (!text.empty()) std::fprintf(stderr, "  repaired: %s\n", text.c_str());
 }
 
+void print_warning(const std::string& text) {
+  std::fprintf(stderr, "  %s %s\n", colored(Stream::kErr, Color::kYellow, "warning:").c_str(), text.c_str());
+}
+
 void print_line(const app::JobResult& r) {
   const std::string input = plain(r.job.input.string()), output = plain(r.job.output.string());
   if (r.status == app::JobStatus::kUnchanged) {
     std::fprintf(stderr, "%s: unchanged, %s is up to date\n", input.c_str(), output.c_str());
     return;
   }
-  std::fprintf(stderr, "%s: %llu triangles in %llu mesh(es) -> %s, %llu bytes, ", input.c_str(),
-               static_cast<unsigned long long>(r.facts.triangles), static_cast<unsigned long long>(r.facts.meshes),
-               output.c_str(), static_cast<unsigned long long>(r.facts.bytes));
-  if (r.status == app::JobStatus::kCached) {
-    std::fprintf(stderr, "from the cache, %.2f s\n", r.seconds);
-  } else {
-    std::fprintf(stderr, "%.2f s (%.0f triangles/s)\n", r.seconds,
-                 r.seconds > 0.0 ? static_cast<double>(r.facts.triangles) / r.seconds : 0.0);
-    if (!r.decided.empty()) std::fprintf(stderr, "  decided: %s\n", plain(r.decided).c_str());
-  }
+  const std::string made = r.status == app::JobStatus::kCached ? "from the cache, " : "";
+  std::fprintf(stderr, "%s -> %s: %s in %s, %s bytes, %s%.2f s\n", input.c_str(), output.c_str(),
+               app::counted(r.facts.triangles, "triangles").c_str(), app::counted(r.facts.meshes, "meshes").c_str(),
+               grouped_digits(r.facts.bytes).c_str(), made.c_str(), r.seconds);
+  if (!r.decided.empty()) std::fprintf(stderr, "  decided: %s\n", plain(r.decided).c_str());
 }
 
 void print_left_out(const app::JobFacts& facts) {
@@ -63,18 +66,18 @@ void print_left_out(const app::JobFacts& facts) {
   for (const scene::LeftOut& left : facts.left_out) {
     std::fprintf(stderr, "  left out: %s: %s\n", plain(left.what).c_str(), plain(left.why).c_str());
   }
-  std::vector<const scene::LeftOut*> losses;
+  std::vector<app::Reason> losses;
   for (const scene::LeftOut& loss : facts.losses) {
     if (!loss.what.starts_with(builder::kUnknownAggregate)) {
-      losses.push_back(&loss);
+      losses.push_back({loss.what, loss.why});
       continue;
     }
     const std::string name = plain(loss.what.substr(builder::kUnknownAggregate.size() - 1));
-    std::fprintf(stderr, "  warning: --aggregate %s: %s\n", name.c_str(), loss.why.c_str());
+    print_warning("--aggregate " + name + ": " + loss.why);
   }
-  if (losses.empty()) return;  // one line for all meshes of a scene
-  const std::string more = losses.size() > 1 ? " and " + std::to_string(losses.size() - 1) + " more" : "";
-  std::fprintf(stderr, "  left out: %s%s: %s\n", losses[0]->what.c_str(), more.c_str(), losses[0]->why.c_str());
+  for (const app::Reason& loss : app::fold_reasons(losses, facts.meshes)) {
+    std::fprintf(stderr, "  left out: %s: %s\n", plain(loss.what).c_str(), plain(loss.why).c_str());
+  }
 }
 
 }  // namespace
@@ -122,7 +125,7 @@ void BatchShow::end(std::size_t job, const app::JobResult& result, const Error* 
   if (error != nullptr || !has_lines_) return;
   if (jobs_.size() > 1) std::fprintf(stderr, "[%zu/%zu] ", job + 1, jobs_.size());
   print_line(result);
-  for (const app::JobWarning& warning : result.warnings) std::fprintf(stderr, "  warning: %s\n", warning.text.c_str());
+  for (const app::JobWarning& warning : result.warnings) print_warning(warning.text);
   print_left_out(result.facts);
 }
 

@@ -24,7 +24,7 @@ Status check_measured(const char* option, const run::Asset& asset, std::size_t m
     if ((group.flags & format::kGroupTerminal) != 0 || group.*deviation < format::kInfiniteError) continue;
     return Error{ErrorCode::kUnsupported, option,
                  "mesh " + std::to_string(mesh) +
-                     ": the asset does not say how far it deviates: " + "this was not measured when it was built"};
+                     ": the asset does not store this deviation: " + "it was not measured by the build"};
   }
   return Ok{};
 }
@@ -32,9 +32,10 @@ Status check_measured(const char* option, const run::Asset& asset, std::size_t m
 }  // namespace
 
 void add_bounds_options(OptionParser& parser, BoundsOptions& options) {
-  parser.add_value("--normal-error", options.normal_error,
-                   "also: shading normals deviate by at most this many degrees, as the asset states it");
-  parser.add_value("--uv-error", options.uv_error, "also: UVs deviate by at most this, in UV units");
+  parser.add_value("--normal-error DEGREES", options.normal_error,
+                   "also limit the stored deviation of normals, 0 to 180 (default: no limit)");
+  parser.add_value("--uv-error E", options.uv_error,
+                   "also limit the stored deviation of texture coordinates, UV units (default: no limit)");
 }
 
 Result<run::AttributeBounds> make_bounds(const BoundsOptions& options, const run::Asset& asset) {

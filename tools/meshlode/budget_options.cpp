@@ -11,9 +11,9 @@ namespace meshlode::cli {
 
 void add_budget_option(OptionParser& parser, std::optional<std::string>& conditions, const std::string& keys,
                        const std::string& example) {
-  const std::string help = "conditions between commas over the keys of " + keys + ", such as '" + example +
-                           "'; where one holds, the exit code is 6";
-  parser.add_value("--fail-if", conditions, help.c_str());
+  const std::string help = "exit with 6 if one of these comma-separated conditions on the keys of " + keys +
+                           " is true, such as '" + example + "' (default: none)";
+  parser.add_value("--fail-if CONDITIONS", conditions, help.c_str());
 }
 
 Result<std::vector<app::Condition>> read_budget_option(const std::optional<std::string>& conditions,

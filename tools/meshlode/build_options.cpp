@@ -11,18 +11,22 @@ namespace meshlode::cli {
 
 void add_build_options(OptionParser& parser, BuildWords& words) {
   for (const app::SettingInfo& info : app::all_settings()) {
+    parser.group(info.group);
     const std::string name = std::string("--") + info.name;
     if (app::is_flag(info.setting)) {
       parser.add_flag(name.c_str(), words.flags[static_cast<std::size_t>(info.setting)], info.help);
-    } else {
-      parser.add_value(name.c_str(), words.layer[info.setting], info.help, app::choices_of(info.setting));
+      continue;
     }
+    const std::string usual = *info.usual == '\0' ? "none" : info.usual;
+    parser.add_value((name + info.value).c_str(), words.layer[info.setting],
+                     (std::string(info.help) + " (default: " + usual + ")").c_str(), app::choices_of(info.setting));
   }
-  parser.add_value("--scene", words.scene,
-                   "which scene of a glTF is instanced: a name, an index or all; the file's default where not given");
-  parser.add_value("--settings-root", words.root,
-                   "folder above the scene: every meshlode.json from there down counts, not only the one beside it");
-  parser.add_flag("--no-settings-file", words.no_file, "pass over meshlode.json beside the scene and in folders above");
+  parser.group("Input");
+  parser.add_value("--scene NAME|INDEX|all", words.scene, "which scene of a glTF to use (default: the file's)");
+  parser.add_value("--settings-root FOLDER", words.root,
+                   "read every meshlode.json from FOLDER down to the scene (default: only the one beside the scene, "
+                   "and with folders as input those above it)");
+  parser.add_flag("--no-settings-file", words.no_file, "ignore meshlode.json");
 }
 
 app::SettingLayer given_settings(const BuildWords& words) {

@@ -117,12 +117,13 @@ Fit fit_spheres(const std::vector<WorldSphere>& spheres, const ViewFrame& view) 
 }  // namespace
 
 void add_camera_options(OptionParser& parser, CameraOptions& options) {
-  parser.add_value("--camera", options.camera,
-                   "ex,ey,ez,tx,ty,tz[,fovy_deg[,near]]: eye, target, field of view, near distance in world units; "
-                   "not given: a view that frames the scene");
-  parser.add_value("--ortho", options.ortho_height, "orthographic: world units that the picture's height spans");
-  parser.add_value("--size", options.size, "picture size in pixels, WxH (1280x720)");
-  parser.add_value("--pixel-error", options.pixel_error, "allowed displacement in pixels (1)");
+  parser.add_value("--camera EX,EY,EZ,TX,TY,TZ[,FOVY[,NEAR]]", options.camera,
+                   "eye, target, vertical field of view in degrees, near distance; world units (default: a view that "
+                   "frames the scene)");
+  parser.add_value("--ortho HEIGHT", options.ortho_height,
+                   "orthographic camera; HEIGHT of the picture in world units (default: perspective)");
+  parser.add_value("--size WxH", options.size, "size of the picture in pixels, each 1 to 16384");
+  parser.add_value("--pixel-error T", options.pixel_error, "allowed error on the screen in pixels, 0 or more");
 }
 
 run::Camera frame_scene(const run::Asset& asset, std::uint32_t width, std::uint32_t height) {

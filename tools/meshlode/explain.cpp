@@ -3,9 +3,12 @@
 #include "base/try.h"
 
 #include <algorithm>
+#include <span>
+#include <vector>
 
 #include "app/preview/plan_report.h"
 #include "app/preview/scene_plan.h"
+#include "app/report/fold_reasons.h"
 #include "app/report/read_meta.h"
 #include "base/printable.h"
 #include "build_options.h"
@@ -54,16 +57,21 @@ Result<std::string> explain_build(const std::vector<app::SettingLayer>& layers, 
 
 std::string describe_recorded_plan(const run::Asset& asset) {
   const app::MetaInfo meta = app::read_meta(asset.meta_json());
+  std::vector<app::Reason> kept, left_out;
+  for (const app::MetaInfo::Decision& decision : meta.decisions) {
+    if (decision.is_kept) kept.push_back({decision.what, decision.reason});
+  }
+  for (const app::MetaInfo::LeftOut& left : meta.left_outs) left_out.push_back({left.what, left.why});
   std::string text = "plan of the asset\n";
   std::size_t rows = 0;
-  const auto line = [&](const char* fate, const std::string& what, const std::string& reason) {
-    if (rows++ < kMaxRows)
-      text += std::string("  ") + fate + printable(what, 120) + ": " + printable(reason, 300) + "\n";
+  const auto add = [&](const char* fate, std::span<const app::Reason> reasons) {
+    for (const app::Reason& reason : app::fold_reasons(reasons, asset.meshes().size())) {
+      if (rows++ >= kMaxRows) continue;
+      text += std::string("  ") + fate + printable(reason.what, 120) + ": " + printable(reason.why, 300) + "\n";
+    }
   };
-  for (const app::MetaInfo::Decision& decision : meta.decisions) {
-    if (decision.is_kept) line("kept      ", decision.what, decision.reason);
-  }
-  for (const app::MetaInfo::LeftOut& left : meta.left_outs) line("left out  ", left.what, left.why);
+  add("kept      ", kept);
+  add("left out  ", left_out);
   return text + more_rows(rows);
 }
 

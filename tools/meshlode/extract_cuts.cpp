@@ -98,7 +98,7 @@ void set_coverage(const CutRequest& request, double diagonal, std::uint32_t heig
 
 Result<std::vector<double>> parse_list(const char* option, const std::string& text) {
   auto numbers = parse_numbers(text);
-  if (!numbers || numbers->size() > kMaxLods) return usage(option, "give 1 to 16 numbers with commas between them");
+  if (!numbers || numbers->size() > kMaxLods) return usage(option, "give 1 to 16 numbers, comma-separated");
   return std::move(*numbers);
 }
 

@@ -10,7 +10,7 @@
 #include "app/report/info.h"
 #include "base/json_writer.h"
 #include "format/names.h"
-#include "outputs.h"
+#include "streams.h"
 
 namespace meshlode::cli {
 
@@ -58,7 +58,7 @@ int extract_stuck(const run::Asset& asset, const std::string& output, const Outp
   }
   const auto glb = app::export_colored_sets(asset, sets);
   if (!glb) return print_error(glb.error());
-  if (const Status status = output_files().write(output, *glb); !status) return print_error(status.error());
+  if (const Status status = write_output(output, *glb); !status) return print_error(status.error());
 
   std::uint64_t triangles = 0;
   for (const ReasonCount& count : counts) triangles += count.triangles;
@@ -96,7 +96,7 @@ int extract_stuck(const run::Asset& asset, const std::string& output, const Outp
   }
   if (sets.empty()) text += "no stuck group: a glTF without meshes\n";
   text += output + ": " + std::to_string(triangles) + " triangles, " + std::to_string(glb->size()) + " bytes\n";
-  return print_out(text) ? 0 : static_cast<int>(ErrorCode::kIo);
+  return print_beside(output, text) ? 0 : static_cast<int>(ErrorCode::kIo);
 }
 
 }  // namespace meshlode::cli

@@ -11,47 +11,37 @@
 
 #include "base/guarded.h"
 #include "base/printable.h"
-#include "exit_codes.h"
+#include "help_text.h"
 #include "library_versions.h"
 #include "options.h"
 #include "outputs.h"
+#include "terminal.h"
 #include "verb.h"
 
 namespace meshlode::cli {
 namespace {
 
-std::string exit_codes() {
-  const std::string head = "exit codes: ";
-  std::string text, line = head;
-  for (std::size_t i = 0; i < kExitCodes.size(); ++i) {
-    const std::string item =
-        std::to_string(kExitCodes[i].code) + " " + kExitCodes[i].meaning + (i + 1 < kExitCodes.size() ? "," : "");
-    if (line.size() + item.size() > 110) {
-      text += line + "\n";
-      line = std::string(head.size(), ' ');
-    } else if (i > 0) {
-      line += ' ';
-    }
-    line += item;
-  }
-  return text + line + "\n";
-}
-
 std::string help() {
-  std::string text =
-      "meshlode: glTF in, a streamable LOD DAG of meshlets out, and a judge that proves it right.\n\n"
-      "usage: meshlode VERB [ARGUMENTS]\n\nverbs:\n";
+  constexpr std::size_t kWidth = 80;
+  std::string text = fill_lines(kProgramDescription, "", 0, kWidth) + "\n" +
+                     colored(Stream::kOut, Color::kBold, "Usage:") + " meshlode COMMAND [ARGUMENTS]\n\n" +
+                     colored(Stream::kOut, Color::kBold, "Examples:") +
+                     "\n  meshlode build scene.glb -o scene.lode\n  meshlode info scene.lode\n"
+                     "  meshlode verify scene.lode --source scene.glb\n\n" +
+                     colored(Stream::kOut, Color::kBold, "Commands:") + "\n";
   for (const Verb* verb : all_verbs()) {
-    std::string name = verb->name;
-    name.resize(std::max<std::size_t>(name.size(), 10), ' ');
-    text += "  " + name + " " + verb->summary + "\n";
+    std::string name = std::string("  ") + verb->name;
+    name.resize(14, ' ');
+    text += fill_lines(verb->summary, name, name.size(), kWidth);
   }
-  return text +
-         "\n`meshlode VERB --help` shows a verb's options and an example; `meshlode --version` what it is built of.\n" +
-         exit_codes();
+  return text + "\n" + colored(Stream::kOut, Color::kBold, "Options:") +
+         "\n  -h, --help        print this help; 'meshlode help COMMAND' that of a command\n"
+         "  -V, --version     print the versions of the program and its libraries\n\n" +
+         fill_lines("Exit status: " + exit_codes_line(), "", 2, kWidth) +
+         "Manual: man meshlode, docs/reference/cli/README.md\n";
 }
 
-/// The verb or option of the program that is nearest to what it is not.
+/// Names the command or the option of the program that is nearest.
 int unknown_verb(std::string_view name) {
   std::vector<std::string> known;
   const bool is_option = name.starts_with('-');
@@ -61,7 +51,7 @@ int unknown_verb(std::string_view name) {
     for (const Verb* verb : all_verbs()) known.emplace_back(verb->name);
   }
   return print_error(
-      {ErrorCode::kUsage, "", unknown_word(is_option ? "option" : "verb", name, known) + "; see meshlode --help"});
+      {ErrorCode::kUsage, "", unknown_word(is_option ? "option" : "command", name, known) + "; see meshlode --help"});
 }
 
 int print_or_fail(const std::string& text) {
@@ -91,15 +81,15 @@ int unexpected(std::string_view word, const char* what_is_taken) {
 
 int run(std::span<char* const> args) {
   if (args.empty()) {
-    std::fputs(help().c_str(), stderr);
-    return static_cast<int>(ErrorCode::kUsage);
+    std::fputs((help() + "\n").c_str(), stderr);
+    return print_error({ErrorCode::kUsage, "", "no command given"});
   }
   const std::string_view name = args[0];
   const bool is_version = name == "--version" || name == "-V" || name == "version";
   if (is_version && args.size() > 1 && is_help(args[1])) return print_or_fail(help());
   if (is_version && args.size() > 1) return unexpected(args[1], "version takes none");
   if (is_version) return print_or_fail(version_text());
-  if (name == "help" && args.size() > 2) return unexpected(args[2], "help takes one (verb)");
+  if (name == "help" && args.size() > 2) return unexpected(args[2], "help takes one (COMMAND)");
   if (name == "help" && args.size() > 1 && !is_help(args[1])) return help_of(args[1]);
   if (is_help(name)) return print_or_fail(help());
   const Verb* const verb = find_verb(name);

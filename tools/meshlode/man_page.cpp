@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "exit_codes.h"
+#include "help_text.h"
 
 namespace meshlode::cli {
 
@@ -75,7 +76,7 @@ std::string head(const std::string& verb, const std::string& version, const std:
          " \\- " + roff(one_line(summary)) + "\n";
 }
 
-/// "-o, --output TEXT", and under it what it is for.
+/// "-o, --output FILE", and under it what it is for.
 std::string option_text(const OptionInfo& option) {
   std::string text = ".TP\n";
   for (std::size_t i = 0; i < option.names.size(); ++i) {
@@ -84,25 +85,80 @@ std::string option_text(const OptionInfo& option) {
   }
   if (option.is_positional && option.is_many) text += " ...";
   if (!option.is_positional && !option.value.empty()) text += " " + italic(option.value);
-  text += "\n" + roff(in_lines(option.help)) + "\n";
-  if (option.choices.empty()) return text;
-  text += ".br\nOne of ";
-  for (std::size_t i = 0; i < option.choices.size(); ++i) {
-    text += (i == 0 ? "" : ", ") + bold(option.choices[i]);
-  }
-  return text + ".\n";
+  return text + "\n" + roff(in_lines(help_with_default(option))) + "\n";
 }
 
-std::string options_of(const VerbHelp& verb, bool is_positional) {
+std::string options_of(const VerbHelp& verb) {
   std::string text;
-  for (const OptionInfo& option : verb.options) {
-    if (option.is_positional == is_positional) text += option_text(option);
+  bool has_heading = false;
+  for (const std::string& group : groups_of(verb.options)) {
+    const bool is_arguments = group == kArguments;
+    if (!is_arguments && !has_heading) text += ".SH OPTIONS\n";
+    has_heading = has_heading || !is_arguments;
+    text += is_arguments ? ".SH ARGUMENTS\n" : ".SS " + roff(group) + "\n";
+    for (const OptionInfo& option : verb.options) {
+      if (option.group == group) text += option_text(option);
+    }
   }
   return text;
 }
 
+/// Paragraphs with an empty line between them.
+std::string description(std::string_view text) {
+  std::string out = ".SH DESCRIPTION\n";
+  while (true) {
+    const std::size_t end = text.find("\n\n");
+    out += roff(in_lines(std::string(text.substr(0, end)))) + "\n";
+    if (end == std::string_view::npos) return out;
+    out += ".PP\n";
+    text.remove_prefix(end + 2);
+  }
+}
+
+/// What a page says of one variable or file.
+struct Mention {
+  const char* name;
+  const char* text;
+  std::vector<std::string_view> verbs;  ///< empty: all
+};
+
+const std::vector<Mention>& environment() {
+  static const std::vector<Mention> all = {
+      {"MESHLODE_CACHE", "folder of earlier builds, unless --cache or --no-cache is given", {"build"}},
+      {"NO_COLOR", "if set and not empty, nothing is coloured unless --color always is given", {}},
+      {"TERM", "nothing is coloured if it is not set or is dumb", {}},
+      {"LC_ALL, LC_CTYPE, LANG",
+       "the first that is set decides whether a terminal shows bars in blocks (UTF-8) or in ASCII",
+       {"info"}},
+  };
+  return all;
+}
+
+const std::vector<Mention>& files() {
+  static const std::vector<Mention> all = {
+      {"meshlode.json",
+       "settings of the scenes in the same folder; an option wins over it, and it wins over the defaults",
+       {"build", "plan"}},
+      {".meshlode-*.tmp",
+       "an output while it is written, in the folder of the output. It is renamed when it is complete. What a killed "
+       "process left is removed by the next command that writes there",
+       {"build", "extract", "info", "measure", "merge", "plan", "render", "repack", "sweep"}},
+  };
+  return all;
+}
+
+/// Nothing where the verb has none; all of them for the program's page, whose verb is empty.
+std::string mentions(const char* heading, const std::vector<Mention>& all, const std::string& verb) {
+  std::string text;
+  for (const Mention& one : all) {
+    const bool is_own = one.verbs.empty() || std::find(one.verbs.begin(), one.verbs.end(), verb) != one.verbs.end();
+    if (is_own || verb.empty()) text += ".TP\n" + bold(one.name) + "\n" + roff(in_lines(one.text)) + "\n";
+  }
+  return text.empty() ? text : std::string(".SH ") + heading + "\n" + text;
+}
+
 std::string synopsis(const VerbHelp& verb) {
-  std::string text = bold("meshlode " + verb.name) + " [" + italic("options") + "]";
+  std::string text = bold("meshlode " + verb.name) + " [" + italic("OPTIONS") + "]";
   for (const OptionInfo& option : verb.options) {
     if (!option.is_positional) continue;
     const std::string name = italic(option.names.front()) + (option.is_many ? " ..." : "");
@@ -136,34 +192,26 @@ std::string see_also(std::span<const VerbHelp> verbs, const std::string& own) {
 }  // namespace
 
 std::string program_man_page(std::span<const VerbHelp> verbs, const std::string& version) {
-  std::string text =
-      head({}, version, "glTF in, a streamable LOD DAG of meshlets out, and a judge that proves it right");
-  text += ".SH SYNOPSIS\n" + bold("meshlode") + " " + italic("verb") + " [" + italic("arguments") + "]\n.br\n" +
-          bold("meshlode --help") + " | " + bold("--version") + "\n.SH VERBS\nEach has a page of its own, and " +
-          bold("--help") + ".\n";
+  std::string text = head({}, version, kProgramSummary);
+  text += ".SH SYNOPSIS\n" + bold("meshlode") + " " + italic("COMMAND") + " [" + italic("ARGUMENTS") + "]\n.br\n" +
+          bold("meshlode help") + " [" + italic("COMMAND") + "]\n" + description(kProgramDescription) +
+          ".SH COMMANDS\nEach has a page of its own, and " + bold("--help") + ".\n";
   for (const VerbHelp& verb : verbs) {
     text += ".TP\n" + bold(verb.name) + "\n" + roff(in_lines(verb.summary)) + "\n";
   }
-  text += ".SH OPTIONS\n.TP\n" + bold("-h") + ", " + bold("--help") + "\nthe verbs and the exit codes\n.TP\n" +
-          bold("--version") + "\nthe program\\(aqs version and build id, and the versions of its libraries\n";
-  return text + exit_status() + see_also(verbs, {});
+  text += ".SH OPTIONS\n.TP\n" + bold("-h") + ", " + bold("--help") + "\nprint the commands and the exit codes\n.TP\n" +
+          bold("-V") + ", " + bold("--version") +
+          "\nprint the program\\(aqs version and build id, and the versions of its libraries\n";
+  return text + mentions("ENVIRONMENT", environment(), {}) + mentions("FILES", files(), {}) + exit_status() +
+         see_also(verbs, {});
 }
 
 std::string verb_man_page(const VerbHelp& verb, std::span<const VerbHelp> verbs, const std::string& version) {
-  std::string text = head(verb.name, version, verb.summary) + synopsis(verb);
-  if (const std::string arguments = options_of(verb, true); !arguments.empty()) text += ".SH ARGUMENTS\n" + arguments;
-  text += ".SH OPTIONS\n" + options_of(verb, false);
-  text += ".SH EXAMPLES\n.nf\n";
-  std::string_view lines = verb.example;
-  while (true) {
-    const std::size_t end = lines.find('\n');
-    std::string_view line = lines.substr(0, end);
-    line.remove_prefix(std::min(line.find_first_not_of(' '), line.size()));
-    text += roff(line) + "\n";
-    if (end == std::string_view::npos) break;
-    lines.remove_prefix(end + 1);
-  }
-  return text + ".fi\n" + exit_status() + see_also(verbs, verb.name);
+  std::string text = head(verb.name, version, verb.summary) + synopsis(verb) + description(verb.description) +
+                     options_of(verb) + ".SH EXAMPLES\n.nf\n";
+  for (const std::string& line : lines_of(verb.example)) text += roff(line) + "\n";
+  return text + ".fi\n" + mentions("ENVIRONMENT", environment(), verb.name) + mentions("FILES", files(), verb.name) +
+         exit_status() + see_also(verbs, verb.name);
 }
 
 std::string man_page_name(const std::string& verb) {

@@ -1,35 +1,26 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// CLI11 and oneTBB's thread limit, seen by this file alone.
+// CLI11, seen by this file alone.
 #include "options.h"
 
 #include <algorithm>
-#include <cerrno>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
-#include <cstring>
 #include <iterator>
 #include <limits>
 #include <type_traits>
 #include <utility>
 
-#include <tbb/global_control.h>
-#include <tbb/task_arena.h>
-#include <tbb/version.h>
 #include <CLI/CLI.hpp>
 
-#include "base/byte_size.h"
 #include "base/nearest_name.h"
 #include "base/printable.h"
 #include "format/names.h"
+#include "help_text.h"
+#include "terminal.h"
 
 namespace meshlode::cli {
 
 namespace {
-
-std::string running_verb;  ///< for errors; written once, before any thread is started
-
-constexpr std::uint32_t kMaxJobs = 256;  ///< threads beyond that only cost memory
 
 template <class T>
 struct Plain {
@@ -69,79 +60,115 @@ std::string choice_fault(const std::string& word, const std::vector<std::string>
   return unknown_choice(printable(word, 64), choices);
 }
 
-/// What an option that names a file or a folder is given; nullptr for all others.
-const char* place_of(std::string_view option) {
-  constexpr std::string_view kFiles[] = {"--output",  "--report", "--manifest", "--junit",
-                                         "--depfile", "--html",   "--source",   "--path"};
-  constexpr std::string_view kFolders[] = {"--output-folder", "--cache", "--settings-root", "--out-dir",
-                                           "--allow-outside"};
-  const auto is_among = [&](std::span<const std::string_view> names) {
-    return std::find(names.begin(), names.end(), option) != names.end();
-  };
-  return is_among(kFiles) ? "a file name" : is_among(kFolders) ? "the name of a folder" : nullptr;
+/// What a value of this type, that the help calls so, is in words; empty: any text.
+template <class T>
+const char* wanted_value(std::string_view value) {
+  using Value = typename Plain<T>::Type;
+  if (std::is_unsigned_v<Value>) return "a whole number";
+  if (std::is_floating_point_v<Value>) return "a number";
+  return value == "FILE" ? "a file name" : value == "FOLDER" ? "the name of a folder" : "";
 }
 
 /// An empty name is none: a variable of a script that is not set.
-std::string empty_fault(const CLI::Option& option, const std::string& word) {
+std::string empty_fault(const CLI::Option& option, const std::string& wanted, const std::string& word) {
   if (!word.empty()) return "";
   if (option.get_positional()) return "the argument is empty";
-  const char* const place = option.get_lnames().empty() ? nullptr : place_of("--" + option.get_lnames().back());
-  return place != nullptr ? std::string("needs ") + place : "";
+  return wanted.empty() ? "" : "needs " + wanted;
 }
+
+/// What the help says of a target that nothing is given for; empty where the target does not say it.
+template <class T>
+std::string usual_text(const T& target) {
+  if constexpr (std::is_same_v<T, std::string>) return target;
+  if constexpr (std::is_arithmetic_v<T>) {
+    char digits[32];
+    return {digits, std::to_chars(digits, digits + sizeof digits, target).ptr};
+  }
+  return {};
+}
+
+std::string joined(const std::vector<std::string>& words, const char* between) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : between) + word;
+  return text;
+}
+
+/// "--size WxH": what CLI11 takes, and what the help calls the value.
+struct NamedValue {
+  std::string names, value;
+
+  NamedValue(std::string_view name, const char* other_value) : names(name.substr(0, name.find(' '))) {
+    value = names.size() < name.size() ? name.substr(names.size() + 1) : other_value;
+  }
+};
 
 }  // namespace
 
 struct OptionParser::State {
   explicit State(const Verb& verb)
       : app(verb.summary, std::string("meshlode ") + verb.name),
-        verb_name(verb.name),
+        help{verb.name, verb.summary, verb.description, verb.example, {}},
         listed_options(verb.listed_options) {
-    app.footer(std::string("Example:\n  ") + verb.example);
     app.allow_extras(false);
-    note(*app.get_help_ptr(), {}, {});
+    group = kGeneral;
+    app.set_help_flag("-h,--help", "print this help");
+    note(*app.get_help_ptr());
+    add("--color", color, "colour in what a terminal shows; auto: unless NO_COLOR is set", {"auto", "always", "never"});
+    group = "Options";
   }
 
   /// One value, the last one given wins nothing: giving an option twice is a usage error (CLI11's default).
   template <class T>
-  void add(const char* name, T& target, const char* help, const std::vector<std::string>& choices = {},
+  void add(const char* name, T& target, const char* text, const std::vector<std::string>& choices = {},
            bool is_required = false) {
-    CLI::Option& option = *app.add_option(name, target, help);
-    const std::string value = option.get_type_name();
+    const bool is_number = std::is_arithmetic_v<typename Plain<T>::Type>;
+    const std::string all = joined(choices, "|");
+    const NamedValue named(name, !choices.empty() ? all.c_str() : is_number ? "N" : "TEXT");
+    CLI::Option& option = *app.add_option(named.names, target, text);
+    const std::string wanted = wanted_value<T>(named.value);
     option.check(CLI::Validator(
-        [choices, &option](std::string& word) {
-          if (std::string fault = empty_fault(option, word); !fault.empty()) return fault;
+        [choices, wanted, &option](std::string& word) {
+          if (choices.empty() && !std::is_arithmetic_v<typename Plain<T>::Type>)
+            return empty_fault(option, wanted, word);
           return choices.empty() ? value_fault<T>(word) : choice_fault(word, choices);
         },
         ""));
     option.required(is_required);
-    note(option, value, choices);
+    OptionInfo& info = note(option);
+    info.value = named.value;
+    info.wanted = choices.empty() ? wanted : "a value: " + list_of_choices(choices);
+    info.choices = choices;
+    info.usual = usual_text(target);
   }
 
-  void note(const CLI::Option& option, std::string value, const std::vector<std::string>& choices) {
-    OptionInfo info;
+  OptionInfo& note(const CLI::Option& option) {
+    OptionInfo& info = help.options.emplace_back();
     for (const std::string& name : option.get_snames()) info.names.push_back("-" + name);
     for (const std::string& name : option.get_lnames()) info.names.push_back("--" + name);
     info.is_positional = option.get_positional();
     if (info.is_positional) info.names = {option.get_name(true)};
-    info.value = std::move(value);
-    info.choices = choices;
     info.help = option.get_description();
+    info.group = info.is_positional ? kArguments : group;
     info.is_required = option.get_required();
     info.is_many = option.get_items_expected_max() > 1;
-    options.push_back(std::move(info));
+    return info;
   }
 
   CLI::App app;
-  std::string verb_name;
-  OptionTable options;  ///< as the app has them, in the order of the help
+  VerbHelp help;  ///< options as the app has them, in the order in which they were added
   OptionTable* listed_options;
+  std::string group;
+  std::string color = "auto";
 };
 
 OptionParser::OptionParser(const Verb& verb) : state_(std::make_unique<State>(verb)) {}
 OptionParser::~OptionParser() = default;
 
+void OptionParser::group(const char* heading) {
+  state_->group = heading;
+}
 void OptionParser::add_flag(const char* name, bool& target, const char* help) {
-  state_->note(*state_->app.add_flag(name, target, help), {}, {});
+  state_->note(*state_->app.add_flag(name, target, help));
 }
 void OptionParser::add_value(const char* name, std::string& target, const char* help,
                              const std::vector<std::string>& choices) {
@@ -170,10 +197,14 @@ void OptionParser::add_value(const char* name, std::optional<std::string>& targe
   state_->add(name, target, help, choices);
 }
 void OptionParser::add_values(const char* name, std::vector<std::string>& target, const char* help) {
-  CLI::Option& option = *state_->app.add_option(name, target, help);
+  const NamedValue named(name, "TEXT");
+  CLI::Option& option = *state_->app.add_option(named.names, target, help);
   option.allow_extra_args(false);  // else it takes the scene that stands behind its value
-  option.check(CLI::Validator([&option](std::string& word) { return empty_fault(option, word); }, ""));
-  state_->note(option, option.get_type_name(), {});
+  const std::string wanted = wanted_value<std::string>(named.value);
+  option.check(CLI::Validator([wanted, &option](std::string& word) { return empty_fault(option, wanted, word); }, ""));
+  OptionInfo& info = state_->note(option);
+  info.value = named.value;
+  info.wanted = wanted;
 }
 void OptionParser::add_positional(const char* name, std::string& target, const char* help) {
   state_->add(name, target, help, {}, true);
@@ -184,44 +215,6 @@ void OptionParser::add_positional(const char* name, std::optional<std::string>& 
 }
 void OptionParser::add_positionals(const char* name, std::vector<std::string>& target, const char* help) {
   state_->add(name, target, help, {}, true);
-}
-
-void add_max_decoded_option(OptionParser& parser, std::string& size) {
-  parser.add_value("--max-decoded", size,
-                   "what images, and geometry beyond 64 times the file, may take in memory: bytes, or with KiB, MiB, "
-                   "GiB, KB, MB, GB (512MiB)");
-}
-
-void add_allow_outside_option(OptionParser& parser, std::vector<std::string>& folders) {
-  parser.add_values("--allow-outside", folders, "read files that the scene names from below DIR too; may be repeated");
-}
-
-Result<std::vector<std::filesystem::path>> parse_allow_outside(const std::vector<std::string>& folders) {
-  std::vector<std::filesystem::path> out;
-  for (const std::string& folder : folders) {
-    std::error_code error;
-    if (!std::filesystem::is_directory(folder, error)) {
-      return Error{ErrorCode::kIo, "--allow-outside", "'" + printable(folder) + "' is no folder"};
-    }
-    out.emplace_back(folder);
-  }
-  return out;
-}
-
-Status check_samples(std::uint64_t samples) {
-  constexpr std::uint64_t kMost = 100'000'000;
-  if (samples >= 1 && samples <= kMost) return Ok{};
-  return Error{ErrorCode::kUsage, "--samples", "give 1 to 100000000"};
-}
-
-Error wrong_size(const char* option, const std::string& got, const char* wanted) {
-  return {ErrorCode::kUsage, option, "expected " + std::string(wanted) + got_text(got)};
-}
-
-Result<std::uint64_t> parse_max_decoded(const std::string& size) {
-  const std::optional<std::uint64_t> bytes = parse_byte_size(size);
-  if (!bytes) return wrong_size("--max-decoded", size, "a size, such as 512MiB or 500MB");
-  return *bytes;
 }
 
 namespace {
@@ -244,16 +237,7 @@ const OptionInfo* find_option(const OptionTable& options, const std::string& tex
   return nullptr;
 }
 
-/// What an option without its value lacks.
-std::string needed_value(const OptionInfo& option) {
-  if (!option.choices.empty()) return "needs a value: " + list_of_choices(option.choices);
-  if (option.value == "UINT") return "needs a whole number";
-  if (option.value == "FLOAT") return "needs a number";
-  const char* const place = place_of(option.names.back());
-  return place != nullptr ? std::string("needs ") + place : "needs a value";
-}
-
-/// "info takes one argument (file)".
+/// "info takes one (FILE)".
 std::string arguments_of(const std::string& verb, const OptionTable& options) {
   std::vector<std::string> names;
   for (const OptionInfo& option : options) {
@@ -291,7 +275,8 @@ UsageFault usage_fault(const CLI::App& app, const std::string& verb, const Optio
   }
   if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr && option != nullptr) {
     const std::string name = text.substr(0, text.find(':'));
-    return {name + (text.ends_with("missing") ? ": " + needed_value(*option) : ": given more than once"), true};
+    const std::string needed = option->wanted.empty() ? "a value" : option->wanted;
+    return {name + (text.ends_with("missing") ? ": needs " + needed : ": given more than once"), true};
   }
   if (dynamic_cast<const CLI::ConversionError*>(&error) != nullptr) {  // "Could not convert: --strict = maybe"
     const std::size_t name = text.find("--"), equals = text.find(" = ", name);
@@ -310,101 +295,26 @@ UsageFault usage_fault(const CLI::App& app, const std::string& verb, const Optio
 
 std::optional<int> OptionParser::parse(std::span<char* const> args) {
   if (state_->listed_options != nullptr) {
-    *state_->listed_options = state_->options;
+    *state_->listed_options = state_->help.options;
     return 0;
   }
   // CLI11 takes the arguments last first.
   std::vector<std::string> reversed(args.rbegin(), args.rend());
   try {
     state_->app.parse(std::move(reversed));
+    use_color(state_->color);
     return std::nullopt;
   } catch (const CLI::CallForHelp&) {
-    return print_out(state_->app.help()) ? 0 : static_cast<int>(ErrorCode::kIo);
+    return print_out(help_text(state_->help)) ? 0 : static_cast<int>(ErrorCode::kIo);
   } catch (const CLI::ParseError& e) {
-    const UsageFault fault = usage_fault(state_->app, state_->verb_name, state_->options, e);
+    const UsageFault fault = usage_fault(state_->app, state_->help.name, state_->help.options, e);
     return print_error({ErrorCode::kUsage, "",
                         fault.text + (fault.is_explained ? "" : "; see " + state_->app.get_name() + " --help")});
   }
 }
 
-void add_output_options(OptionParser& parser, OutputOptions& options, const std::vector<std::string>& more_formats) {
-  std::vector<std::string> formats{"text", "json"};
-  formats.insert(formats.end(), more_formats.begin(), more_formats.end());
-  std::string help = "what is printed on stdout: " + formats.front();
-  for (std::size_t i = 1; i < formats.size(); ++i) help += (i + 1 < formats.size() ? ", " : " or ") + formats[i];
-  parser.add_value("--format", options.format, help.c_str(), formats);
-  parser.add_flag("-q,--quiet", options.quiet, "no progress and no summary; errors are still printed");
-}
-
-void add_jobs_option(OptionParser& parser, std::uint32_t& jobs) {
-  parser.add_value("-j,--jobs", jobs, "threads; 0 is one per core. The output never depends on it");
-}
-
-struct JobLimit::State {
-  explicit State(std::uint32_t jobs)
-      : control(tbb::global_control::max_allowed_parallelism, jobs), arena(static_cast<int>(jobs)) {}
-  tbb::global_control control;
-  tbb::task_arena arena;
-};
-
-JobLimit::JobLimit(std::uint32_t jobs)
-    : state_(jobs == 0 ? nullptr : std::make_unique<State>(std::min(jobs, kMaxJobs))) {}
-JobLimit::~JobLimit() = default;
-
-void JobLimit::run(const std::function<void()>& work) {
-  if (!state_) return work();
-  state_->arena.execute(work);
-}
-
-std::optional<std::vector<double>> parse_numbers(std::string_view text) {
-  std::vector<double> numbers;
-  while (true) {
-    const std::size_t comma = text.find(',');
-    const std::string_view part = text.substr(0, comma);
-    double value = 0.0;
-    const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), value);
-    if (error != std::errc{} || end != part.data() + part.size() || !std::isfinite(value)) return std::nullopt;
-    numbers.push_back(value);
-    if (comma == std::string_view::npos) return numbers;
-    text.remove_prefix(comma + 1);
-  }
-}
-
-std::string unknown_word(std::string_view what, std::string_view word, const std::vector<std::string>& known) {
-  return "unknown " + std::string(what) + " '" + printable(word, 64) + "'" + nearest_hint(word, known);
-}
-
 std::string cli11_version() {
   return CLI11_VERSION;
-}
-
-std::string onetbb_version() {
-  return TBB_runtime_version();
-}
-
-void name_verb_in_errors(std::string_view verb) {
-  running_verb = std::string(verb);
-}
-
-int print_error(const Error& error) {
-  // One line whatever the detail holds: file names and JSON texts may have line breaks and control characters.
-  const bool is_usage = error.code == ErrorCode::kUsage && !running_verb.empty();
-  std::string line = (is_usage ? "meshlode " + running_verb : "meshlode") + ": " + error.message();
-  for (char& c : line) {
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) c = ' ';
-  }
-  line += '\n';
-  std::fwrite(line.data(), 1, line.size(), stderr);
-  return static_cast<int>(error.code);
-}
-
-bool print_out(const std::string& text) {
-  const bool ok = std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
-  if (ok) return true;
-  // A reader that has enough, such as head, is no failure: what the command found still decides the exit code.
-  if (errno == EPIPE) return true;
-  print_error({ErrorCode::kIo, "stdout", std::string("cannot write: ") + std::strerror(errno)});
-  return false;
 }
 
 }  // namespace meshlode::cli

@@ -19,8 +19,8 @@
 
 namespace meshlode::cli {
 
-/// Options and positional arguments of one verb. `--help` is always there. Targets keep their value where the option is
-/// not given, and must outlive parse().
+/// Options and positional arguments of one verb. `--help` and `--color` are always there. Targets keep their value
+/// where the option is not given, and must outlive parse().
 class OptionParser {
  public:
   explicit OptionParser(const Verb& verb);
@@ -28,9 +28,14 @@ class OptionParser {
   OptionParser(const OptionParser&) = delete;
   OptionParser& operator=(const OptionParser&) = delete;
 
-  /// Names are CLI11's: "--size", or "-o,--output" for two spellings.
+  /// The heading that `--help` lists the options added from here on under.
+  void group(const char* heading);
+
+  /// Names are CLI11's and, after a space, what the help calls the value: "--size WxH", or "-o,--output FILE" for two
+  /// spellings. The help says meaning, unit and range. The default is taken from the target; where that is empty `help`
+  /// ends in "(default: ...)" or "(required)".
   void add_flag(const char* name, bool& target, const char* help);
-  /// With `choices`, anything else is a usage error.
+  /// With `choices`, anything else is a usage error; they are what the help calls the value unless the name has one.
   void add_value(const char* name, std::string& target, const char* help, const std::vector<std::string>& choices = {});
   void add_value(const char* name, double& target, const char* help);
   void add_value(const char* name, std::uint32_t& target, const char* help);
@@ -56,7 +61,7 @@ class OptionParser {
   std::unique_ptr<State> state_;
 };
 
-/// `--format text|json` and `--quiet`; with `more_formats` these too.
+/// `--format text|json` and `-q,--quiet`; with `more_formats` these too.
 struct OutputOptions {
   std::string format = "text";
   bool quiet = false;
@@ -65,7 +70,7 @@ struct OutputOptions {
 void add_output_options(OptionParser& parser, OutputOptions& options,
                         const std::vector<std::string>& more_formats = {});
 
-/// `--jobs N`: threads; 0 (the default) is one per core.
+/// `-j,--jobs N`: threads; 0 (the default) is one per core.
 void add_jobs_option(OptionParser& parser, std::uint32_t& jobs);
 
 /// `--max-decoded SIZE`: what images and geometry may take decoded.
@@ -112,11 +117,15 @@ class JobLimit {
 
 /// From here on a usage error is one of this verb's: "meshlode build: …".
 void name_verb_in_errors(std::string_view verb);
+/// From here on errors call what has this path by this name.
+void rename_in_errors(const std::string& path, const std::string& name);
 
 /// One line on stderr, "meshlode: where: detail" ("meshlode VERB: …" for kUsage), and the exit code to return.
 int print_error(const Error& error);
 
-/// Writes text to stdout; false (and an error on stderr) where that fails, such as on a full disk. A pipe that is no
+/// Writes to stdout. Error: kIo, as on a full disk. A pipe that is no longer read is no failure.
+[[nodiscard]] Status write_stdout(std::string_view text);
+/// The same; false (and an error on stderr) where that fails, such as on a full disk. A pipe that is no
 /// longer read is no failure.
 [[nodiscard]] bool print_out(const std::string& text);
 

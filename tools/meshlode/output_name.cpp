@@ -48,12 +48,12 @@ Error wrong_name(const char* option, const std::string& path, const std::string&
                  std::span<const std::string_view> formats) {
   const std::string name = printable(path, 200);
   if (formats.empty()) {
-    return {ErrorCode::kUsage, option, "what is written is no " + extension + " file (got '" + name + "')"};
+    return {ErrorCode::kUsage, option, "does not write " + extension + " file (got '" + name + "')"};
   }
   const std::string wanted(formats.front());
   return {ErrorCode::kUsage, option,
-          "what is written is a " + wanted + " file, not a " + extension + " file (got '" + name +
-              "'); give a name that ends in " + wanted};
+          "writes a " + wanted + " file, not a " + extension + " file (got '" + name +
+              "'); choose a name that ends in " + wanted};
 }
 
 }  // namespace

@@ -6,9 +6,10 @@
 namespace meshlode::cli {
 
 void add_promise_option(OptionParser& parser, std::string& promise) {
-  parser.add_value("--promise", promise,
-                   "what may be off by the error: position; texels, texture coordinates too; appearance, normals too",
-                   all_names(format::kPromiseNames));
+  parser.add_value(
+      "--promise", promise,
+      "what the pixel error or error limits: position; texels: also texture coordinates; appearance: also normals",
+      all_names(format::kPromiseNames));
 }
 
 Status choose_promise(const std::string& promise, run::Asset& asset) {

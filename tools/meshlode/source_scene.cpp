@@ -25,13 +25,11 @@ bool was_repaired(const run::Asset& asset, const app::MetaInfo& meta) {
 }  // namespace
 
 void add_source_options(OptionParser& parser, SourceOptions& options) {
-  parser.add_value("--source", options.path, "the scene it was built from");
-  parser.add_flag("--repair", options.repair,
-                  "repair the source as build --repair does, also where the asset does not say so");
+  parser.add_value("--source SCENE", options.path, "scene that the asset was built from (required)");
+  parser.add_flag("--repair", options.repair, "repair the source as 'build --repair' does, whatever the asset says");
   parser.add_flag("--linear-colors", options.linear_colors,
-                  "take colours as build --linear-colors does, also where the asset does not say so");
-  parser.add_flag("--force", options.is_forced,
-                  "compare with another scene, too, than the one that the asset was built from");
+                  "read colours as 'build --linear-colors' does, whatever the asset says");
+  parser.add_flag("--force", options.is_forced, "accept another scene than the one that the asset was built from");
   add_allow_outside_option(parser, options.allow_outside);
 }
 

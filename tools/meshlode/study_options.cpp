@@ -7,9 +7,9 @@
 namespace meshlode::cli {
 
 void add_study_options(OptionParser& parser, StudyWords& words) {
-  parser.add_value("--care", words.care,
-                   "NAME=off, comma by comma: without double-quadrics, fallback, spheres or needles");
-  parser.add_value("--simplifier", words.simplifier, "openmesh's decimater reduces the groups, to compare",
+  parser.group("Experiments (recorded in the asset)");
+  parser.add_value("--care NAME=off,...", words.care, "leave out double-quadrics, fallback, spheres or needles");
+  parser.add_value("--simplifier", words.simplifier, "what simplifies the groups: OpenMesh's decimater, to compare",
                    all_names(lab::kSimplifierNames));
 }
 

@@ -14,8 +14,9 @@ namespace meshlode::cli {
 
 struct Verb {
   const char* name;
-  const char* summary;  ///< one line, shown in the list of verbs and at the top of the verb's help
-  const char* example;  ///< one or more command lines, shown at the end of the verb's help
+  const char* summary;      ///< one line, shown in the list of verbs and at the top of the verb's help
+  const char* description;  ///< what it does, for the manual page; an empty line between paragraphs
+  const char* example;      ///< one or more command lines
   /// Runs the verb on the arguments after its name and returns the exit code.
   int (*run)(const Verb& verb, std::span<char* const> args);
   /// Not null: run() puts its options here when it parses, and does nothing else.

@@ -87,7 +87,6 @@ struct BuildCommand {
   app::BatchOptions options;
   Hash128 program{};  ///< where a cache or a manifest wants it
   std::optional<app::Cache> cache;
-  std::string report_path;
   std::optional<std::string> fail_if;
   std::optional<builder::BuildHooks> hooks;  ///< of a study
   std::optional<app::ShardPlan> shard;
@@ -121,7 +120,7 @@ Result<std::vector<Job>> take_share(const std::vector<Job>& jobs, BuildCommand& 
   TRY_LET(shard, app::parse_shard(command.words.shard));
   if (command.words.fail_fast) {
     return Error{ErrorCode::kUsage, "--shard",
-                 "give this or --fail-fast: shards know nothing of each other's failures"};
+                 "give this or --fail-fast, not both: shards do not know of each other's failures"};
   }
   std::vector<std::uint64_t> weights;
   weights.reserve(jobs.size());
@@ -160,7 +159,7 @@ std::string plan_text(const std::vector<JobResult>& results) {
 
 BatchFileNames names_of_files(const BuildCommand& command) {
   return {command.words.manifest, command.words.junit,
-          command.words.depfile,  command.report_path,
+          command.words.depfile,  command.words.report,
           command.program,        app::settings_text(command.options.pipeline, command.options.import),
           command.shard,          command.options.import.allow_outside};
 }
@@ -169,7 +168,7 @@ BatchFileNames names_of_files(const BuildCommand& command) {
 Status check_formats(const BuildCommand& command, const std::string& output) {
   Status checks[] = {check_output_name("-o", output, ".lode"),
                      check_text_name("--manifest", command.words.manifest, {".json"}),
-                     check_text_name("--report", command.report_path, {".json"}),
+                     check_text_name("--report", command.words.report, {".json"}),
                      check_text_name("--junit", command.words.junit, {".xml"}),
                      check_text_name("--depfile", command.words.depfile, {})};
   for (Status& status : checks) {
@@ -182,9 +181,9 @@ Status check_formats(const BuildCommand& command, const std::string& output) {
 Status check_names(const BuildCommand& command, const std::vector<Job>& jobs) {
   for (const Job& job : jobs) {
     if (is_same_place(job.input, job.output) && look_at_file(job.input.string()).form == FileForm::kAsset) {
-      return Error{ErrorCode::kUnsupported, job.input.string(),
-                   "this is a .lode asset already; look at it with 'meshlode info', store it anew with 'meshlode "
-                   "repack'"};
+      return Error{
+          ErrorCode::kUnsupported, job.input.string(),
+          "this is a .lode asset already; look at it with 'meshlode info', change its codec with 'meshlode repack'"};
     }
     if (command.words.depfile.empty()) continue;
     for (const fs::path& path : {job.input, job.output}) {
@@ -233,7 +232,7 @@ int run_jobs(const std::vector<Job>& jobs, const BuildCommand& command) {
     if (const auto error = command.cache->store().first_error()) print_error(*error);
   }
   const bool is_told = !command.out.quiet && !command.out.json() && !is_dry;
-  if (is_told && jobs.size() > 1) std::fputs(app::summary_table(results).c_str(), stderr);
+  if (is_told && jobs.size() > 1) std::fputs(app::summary_text(results).c_str(), stderr);
   if (command.out.json() && !print_out(report)) worst = std::max(worst, static_cast<int>(ErrorCode::kIo));
   if (is_dry && !command.out.json() && !print_out(plan_text(results))) {
     worst = std::max(worst, static_cast<int>(ErrorCode::kIo));
@@ -290,25 +289,28 @@ int run_command(const Verb& verb, std::span<char* const> args, bool is_study) {
   StudyWords study;
   BuildCommand command;
   OptionParser parser(verb);
-  parser.add_positionals("input", inputs,
-                         ".gltf, .glb, .ply, .obj or .stl files, patterns of them, and folders with -O");
-  parser.add_value("-o,--output", output, "the asset to write; the input's name with .lode where not given");
-  parser.add_value("-O,--output-folder", output_folder, "folder for the assets of many inputs; made where missing");
+  parser.add_positionals("INPUT", inputs,
+                         ".gltf, .glb, .ply, .obj or .stl files; with -O also folders and patterns such as "
+                         "'art/**/*.glb'");
+  parser.group("Output");
+  parser.add_value("-o,--output FILE", output, "asset to write (default: INPUT with the extension .lode)");
+  parser.add_value("-O,--output-folder FOLDER", output_folder,
+                   "folder for the assets of many inputs; created if missing (default: beside each input)");
+  add_output_options(parser, command.out);
+  parser.add_flag("-v,--explain", command.is_explained, "print the settings and what is kept, as 'meshlode plan' does");
   add_build_options(parser, words);
   if (is_study) add_study_options(parser, study);
-  parser.add_flag("--explain", command.is_explained, "say what is kept, and why, as plan does");
-  parser.add_value("--max-memory", limits.max_memory,
-                   "what the build may take, such as 8GiB: meshes one by one to keep it, or refused before it begins; "
-                   "auto: what is left");
-  add_allow_outside_option(parser, limits.allow_outside);
-  add_max_decoded_option(parser, limits.max_decoded);
-  add_jobs_option(parser, command.jobs);
-  parser.add_value("--report", command.report_path,
-                   "write times and counts as JSON, the same that --format json prints");
+  parser.group("Output");
   add_batch_options(parser, command.words);
   add_budget_option(parser, command.fail_if, "info --format json",
                     "totals.bytes_per_source_triangle>10, any(meshes).stuck_groups>0");
-  add_output_options(parser, command.out);
+  parser.group("Resources");
+  add_jobs_option(parser, command.jobs);
+  parser.add_value("--max-memory SIZE", limits.max_memory,
+                   "limit of the process, such as 8GiB: fewer meshes are built at once, and a build that needs more is "
+                   "refused; auto: what the machine has left");
+  add_max_decoded_option(parser, limits.max_decoded);
+  add_allow_outside_option(parser, limits.allow_outside);
   if (const auto exit_code = parser.parse(args)) return *exit_code;
   if (!output.empty() && !output_folder.empty()) {
     return print_error({ErrorCode::kUsage, "", "give -o or -O, not both"});
@@ -325,7 +327,6 @@ int run_command(const Verb& verb, std::span<char* const> args, bool is_study) {
   const auto share = take_share(*plan, command);
   if (!share) return print_error(share.error());
   std::vector<std::string> side_outputs = command.words.outputs();
-  if (!command.report_path.empty()) side_outputs.push_back(command.report_path);
   const bool is_dry = command.words.dry_run;
   if (const Status free = check_outputs(*plan, side_outputs, is_dry); !free) return print_error(free.error());
   if (const Status formats = check_formats(command, output); !formats) return print_error(formats.error());
@@ -344,7 +345,7 @@ int run_command(const Verb& verb, std::span<char* const> args, bool is_study) {
   command.options.lists_files = !command.words.depfile.empty() || !command.words.manifest.empty();
   command.options.side_outputs = std::move(side_outputs);
   int none = 0;
-  if (plan->empty()) none = print_error({ErrorCode::kIo, inputs.front(), "no scene below this folder"});
+  if (plan->empty()) none = print_error({ErrorCode::kIo, inputs.front(), "no scene in this folder"});
   return std::max(none, run_jobs(*share, command));
 }
 
@@ -359,11 +360,21 @@ int run_study(const Verb& verb, std::span<char* const> args) {
 }  // namespace
 
 const Verb kBuildVerb{
-    "build", "turn glTF, PLY, OBJ or STL scenes into .lode assets",
-    "meshlode build scene.glb -o scene.lode\n  meshlode build a.glb folder/ 'more/**/*.gltf' -O out/ --cache cache/",
+    "build", "convert glTF, PLY, OBJ or STL scenes to .lode assets",
+    "Builds a level-of-detail DAG of clusters for each mesh of a scene and writes it, with nodes, materials, textures "
+    "and animations, as one .lode asset.\n\n"
+    "The settings can also be in a file meshlode.json beside the scene; an option wins over the file. The asset's "
+    "bytes depend on the scene and the settings alone, not on the number of threads or the machine.\n\n"
+    "With -O many scenes are built. A scene that fails does not stop the others, and the exit status is the worst one. "
+    "Each file appears whole or not at all.",
+    "meshlode build scene.glb -o scene.lode\n"
+    "  meshlode build scene.glb -o scene.lode --preset best --error-tier certified\n"
+    "  meshlode build a.glb folder/ 'more/**/*.gltf' -O out/ --cache cache/",
     run_build};
 
-const Verb kStudyVerb{"study", "build as a study wants it: the asset says so, and is for no scene that ships",
+const Verb kStudyVerb{"study", "build with experimental settings, which the asset records",
+                      "Does what build does, with parts of the builder left out or replaced, to measure what they are "
+                      "worth. Its assets are not meant to be shipped.",
                       "meshlode study scene.glb -o scene.lode --care needles=off", run_study};
 
 }  // namespace meshlode::cli

@@ -57,14 +57,17 @@ Result<run::Asset> open_sound(const std::string& path, std::uint64_t max_decoded
 int run_compare(const Verb& verb, std::span<char* const> args) {
   CompareOptions options;
   OptionParser parser(verb);
-  parser.add_positional("old", options.before, "a .lode asset");
-  parser.add_positional("new", options.after, "another, with which the first is compared");
-  parser.add_flag("--render", options.is_rendered, "draw both with one camera, and compare the pictures");
-  add_camera_options(parser, options.camera);
-  add_budget_option(parser, options.fail_if, "--format json", "file_bytes.ratio>1.02, any(meshes).levels.change!=0");
-  add_max_decoded_option(parser, options.max_decoded);
-  add_jobs_option(parser, options.jobs);
+  parser.add_positional("OLD", options.before, "a .lode asset");
+  parser.add_positional("NEW", options.after, "the asset to compare with it");
+  parser.group("Output");
   add_output_options(parser, options.output);
+  add_budget_option(parser, options.fail_if, "--format json", "file_bytes.ratio>1.02, any(meshes).levels.change!=0");
+  parser.group("Pictures");
+  parser.add_flag("--render", options.is_rendered, "draw both with one camera and compare the pictures");
+  add_camera_options(parser, options.camera);
+  parser.group("Resources");
+  add_jobs_option(parser, options.jobs);
+  add_max_decoded_option(parser, options.max_decoded);
   if (const auto exit_code = parser.parse(args)) return *exit_code;
   const auto budget = read_budget_option(options.fail_if, app::compare_schema());
   if (!budget) return print_error(budget.error());
@@ -116,10 +119,14 @@ int run_compare(const Verb& verb, std::span<char* const> args) {
 
 }  // namespace
 
-const Verb kCompareVerb{"compare", "what changed between two assets, and whether it is within limits",
-                        "meshlode compare old.lode new.lode\n"
-                        "  meshlode compare old.lode new.lode --render --format json "
-                        "--fail-if 'file_bytes.ratio>1.02, any(meshes).levels.change!=0, picture.psnr<40'",
-                        run_compare};
+const Verb kCompareVerb{
+    "compare", "show what changed between two assets and check it against limits",
+    "Compares sizes, settings, meshes, levels, materials and images of two assets, usually two builds of one scene. "
+    "With --render both are drawn with one camera and the pictures are compared.\n\n"
+    "With --fail-if the changes become limits that a pipeline can check.",
+    "meshlode compare old.lode new.lode\n"
+    "  meshlode compare old.lode new.lode --fail-if 'file_bytes.ratio>1.02'\n"
+    "  meshlode compare old.lode new.lode --render --fail-if 'picture.psnr<40'",
+    run_compare};
 
 }  // namespace meshlode::cli

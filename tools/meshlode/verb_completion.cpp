@@ -26,8 +26,9 @@ int run_completion(const Verb& verb, std::span<char* const> args) {
   std::vector<std::string> names;
   for (const Shell& shell : kShells) names.emplace_back(shell.name);
   OptionParser parser(verb);
-  parser.add_positional("shell", name, "whose script", names);
-  parser.add_value("-o,--output", output, "the file to write; stdout where not given");
+  parser.add_positional("SHELL", name, "shell to complete in", names);
+  parser.group("Output");
+  parser.add_value("-o,--output FILE", output, "file to write (default: stdout)");
   if (const auto exit_code = parser.parse(args)) return *exit_code;
   if (const Status sound = check_text_name("-o", output, {}); !sound) return print_error(sound.error());
   for (const Shell& shell : kShells) {
@@ -37,12 +38,14 @@ int run_completion(const Verb& verb, std::span<char* const> args) {
     const Status written = write_text(output, text);
     return written ? 0 : print_error(written.error());
   }
-  return print_error({ErrorCode::kUsage, "shell", "say which: bash, zsh or fish"});
+  return print_error({ErrorCode::kUsage, "SHELL", "choose bash, zsh or fish"});
 }
 
 }  // namespace
 
-const Verb kCompletionVerb{"completion", "a script by which bash, zsh or fish completes verbs and options",
+const Verb kCompletionVerb{"completion", "print a script with which bash, zsh or fish completes commands and options",
+                           "The script knows the commands, the options and the values of this program. Load it in the "
+                           "shell's start file, or write it to where the shell looks for completions.",
                            "source <(meshlode completion bash)\n"
                            "  meshlode completion fish -o ~/.config/fish/completions/meshlode.fish",
                            run_completion};

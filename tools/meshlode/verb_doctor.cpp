@@ -19,6 +19,8 @@
 #include "options.h"
 #include "run/read/asset.h"
 #include "scene/import/import.h"
+#include "streams.h"
+#include "terminal.h"
 #include "verb.h"
 
 namespace meshlode::cli {
@@ -68,6 +70,8 @@ std::vector<std::string> all_fault_ids() {
   return ids;
 }
 
+constexpr ColoredWord kSeverities[] = {{"[high,", Color::kRed}, {"[medium,", Color::kYellow}, {"[low,", Color::kDim}};
+
 int run_doctor(const Verb& verb, std::span<char* const> args) {
   std::string path, max_decoded = kDefaultMaxDecodedText;
   std::vector<std::string> allow_outside;
@@ -75,15 +79,18 @@ int run_doctor(const Verb& verb, std::span<char* const> args) {
   scene::ImportOptions options;
   OutputOptions output;
   OptionParser parser(verb);
-  parser.add_positional("file", path, "a .gltf, .glb, .ply, .obj or .stl scene, or a .lode asset");
-  parser.add_value("--fail-on", fail_on,
-                   "exit with 6 where one of these is found: ids, high, medium (and worse) or any, between commas");
-  parser.add_value("--scene", options.scene, "glTF: the name or index of the scene to examine, or all");
-  add_allow_outside_option(parser, allow_outside);
-  parser.add_flag("--linear-colors", options.linear_colors,
-                  "colour levels of PLY and STL are taken as linear, as build --linear-colors does");
-  add_max_decoded_option(parser, max_decoded);
+  parser.add_positional("FILE", path, "a .gltf, .glb, .ply, .obj or .stl scene, or a .lode asset; - for stdin");
+  parser.group("Output");
   add_output_options(parser, output);
+  parser.add_value("--fail-on FAULTS", fail_on,
+                   "exit with 6 if one of these is found: fault ids, high, medium (and worse) or any, comma-separated "
+                   "(default: none)");
+  parser.group("Input");
+  parser.add_value("--scene NAME|INDEX|all", options.scene, "which scene of a glTF to examine (default: the file's)");
+  parser.add_flag("--linear-colors", options.linear_colors, "read colours as 'build --linear-colors' does");
+  add_allow_outside_option(parser, allow_outside);
+  parser.group("Resources");
+  add_max_decoded_option(parser, max_decoded);
   if (const auto exit_code = parser.parse(args)) return *exit_code;
   const Result<std::uint64_t> decoded = parse_max_decoded(max_decoded);
   if (!decoded) return print_error(decoded.error());
@@ -97,11 +104,15 @@ int run_doctor(const Verb& verb, std::span<char* const> args) {
     if (auto known = app::find_failures(*fail_on, all_fault_ids(), {}); !known) return print_error(known.error());
   }
   Status sound = Ok{};
-  Result<app::DoctorReport> report = examine(path, options, sound);
+  const Result<std::string> place = input_path(path);
+  if (!place) return print_error(place.error());
+  path = input_name(path);
+  Result<app::DoctorReport> report = examine(*place, options, sound);
   if (!report) return print_error(report.error());
   report->file = path;
   if (fail_on) report->failed_on = *app::find_failures(*fail_on, all_fault_ids(), report->diagnoses);
-  const std::string text = output.json() ? app::doctor_json(*report) : app::doctor_text(*report);
+  const std::string text =
+      output.json() ? app::doctor_json(*report) : with_colored_words(app::doctor_text(*report), kSeverities);
   const bool is_silent = output.quiet && !output.json() && report->diagnoses.empty();
   if (!is_silent && !print_out(text)) return static_cast<int>(ErrorCode::kIo);
   if (!sound) return print_error({sound.error().code, path + ": " + sound.error().where, sound.error().detail});
@@ -110,9 +121,14 @@ int run_doctor(const Verb& verb, std::span<char* const> args) {
 
 }  // namespace
 
-const Verb kDoctorVerb{"doctor", "what in a source costs accuracy, bytes or time, worst first, with the remedy",
-                       "meshlode doctor scene.glb\n  meshlode doctor scene.glb --fail-on unwelded-seams,not-finite\n"
-                       "  meshlode doctor scene.lode --format json",
-                       run_doctor};
+const Verb kDoctorVerb{
+    "doctor", "find what in a scene costs accuracy, bytes or time, worst first, with the remedy",
+    "Looks for faults of a scene, such as seams that are not welded, degenerate triangles or positions far from the "
+    "origin, and says what each costs and how to fix it. Nothing is built or changed.\n\n"
+    "For an asset it reports what its tables show, such as groups that could not be simplified.",
+    "meshlode doctor scene.glb\n"
+    "  meshlode doctor scene.glb --fail-on unwelded-seams,not-finite\n"
+    "  meshlode doctor scene.lode --format json",
+    run_doctor};
 
 }  // namespace meshlode::cli

@@ -20,6 +20,7 @@
 #include "outputs.h"
 #include "promise_option.h"
 #include "run/read/asset.h"
+#include "streams.h"
 #include "verb.h"
 
 namespace meshlode::cli {
@@ -41,10 +42,12 @@ Error usage(const char* option, const char* detail) {
 }
 
 Status check_options(const ExtractOptions& o) {
-  if (!o.output) return usage("-o", "say where the GLB goes");
+  if (!o.output) return usage("-o", "name the GLB to write");
+  if (*o.output == kStream && o.out.json()) return usage("-o", "- and --format json both mean stdout");
   if (Status name = check_output_name("-o", *o.output, ".glb"); !name) return name;
   if (o.is_stuck) {
-    if (o.request.has_way() || o.request.bounds.has_any() || o.mesh) return usage("--stuck", "stands alone");
+    if (o.request.has_way() || o.request.bounds.has_any() || o.mesh)
+      return usage("--stuck", "cannot be combined with a cut, a bound or --mesh");
   } else if (auto status = check_request(o.request); !status) {
     return status.error();
   }
@@ -204,27 +207,32 @@ int run_extract(const Verb& verb, std::span<char* const> args) {
   CutRequest& r = o.request;
   OptionParser parser(verb);
   parser.add_positional("FILE", o.input, "a .lode asset");
-  parser.add_value("-o,--output", o.output, "the GLB to write");
-  parser.add_value("--error", r.error, "uniform cut: the largest error allowed, in mesh units");
-  parser.add_value("--triangles", r.triangles,
-                   "the finest uniform cut with at most this many triangles over all exported meshes together");
-  parser.add_value("--level", r.level, "cut at one level of the DAG, 0 the finest");
-  parser.add_value("--lods", r.lods, "MSFT_lod chain: this many levels, each half the triangles of the one before");
-  parser.add_value("--lod-ratios", r.lod_ratios,
-                   "MSFT_lod chain by shares of each mesh's triangles, such as 1,0.3,0.1");
-  parser.add_value("--lod-errors", r.lod_errors, "MSFT_lod chain by errors, such as 0,0.001,0.01");
-  parser.add_flag("--relative", r.is_relative, "errors are fractions of each mesh's own diagonal");
-  parser.add_flag("--world", r.is_world, "errors are in world units: the largest instance of a mesh decides");
-  parser.add_value("--by", r.by, "the stored number that --error is compared with (selection)",
-                   all_names(run::kCutErrorNames));
-  parser.add_value("--mesh", o.mesh, "this mesh only, by name or index; the nodes of others stay, without a mesh");
-  parser.add_flag("--stuck", o.is_stuck,
-                  "instead of a cut the groups where simplification is stuck, coloured by reason");
+  parser.group("Output");
+  parser.add_value("-o,--output FILE", o.output, "GLB to write, or - for stdout (required)");
+  add_output_options(parser, o.out);
+  parser.add_value("--mesh NAME|INDEX", o.mesh,
+                   "export only this mesh; nodes of others stay, without a mesh (default: all meshes)");
+  parser.group("Cut (one of these)");
+  parser.add_value("--error E", r.error, "uniform cut: largest allowed error in mesh units (default: none)");
+  parser.add_value("--triangles N", r.triangles,
+                   "finest uniform cut with at most N triangles over all exported meshes (default: none)");
+  parser.add_value("--level N", r.level, "one level of the DAG, 0 is the finest (default: none)");
+  parser.add_value("--lods N", r.lods,
+                   "MSFT_lod chain of N levels, each with half the triangles of the one before (default: none)");
+  parser.add_value("--lod-ratios LIST", r.lod_ratios,
+                   "MSFT_lod chain by shares of each mesh's triangles, such as 1,0.3,0.1 (default: none)");
+  parser.add_value("--lod-errors LIST", r.lod_errors, "MSFT_lod chain by errors, such as 0,0.001,0.01 (default: none)");
+  parser.add_flag("--stuck", o.is_stuck, "the groups that could not be simplified, coloured by reason");
+  parser.group("What the cut is chosen by");
+  parser.add_flag("--relative", r.is_relative, "errors are fractions of each mesh's diagonal");
+  parser.add_flag("--world", r.is_world, "errors are in world units; the largest instance of a mesh decides");
+  parser.add_value("--by", r.by, "stored error that --error is compared with", all_names(run::kCutErrorNames));
   add_promise_option(parser, o.promise);
   add_bounds_options(parser, r.bounds);
+  parser.group("Camera");
   add_camera_options(parser, r.camera);
+  parser.group("Resources");
   add_max_decoded_option(parser, o.max_decoded);
-  add_output_options(parser, o.out);
   if (const auto exit_code = parser.parse(args)) return *exit_code;
   if (auto status = check_options(o); !status) return print_error(status.error());
 
@@ -234,7 +242,7 @@ int run_extract(const Verb& verb, std::span<char* const> args) {
   if (!asset) return print_error(asset.error());
   if (const Status promised = choose_promise(o.promise, *asset); !promised) return print_error(promised.error());
   if (const auto id = asset->file_id()) output_files().keep(*id);
-  if (const Status free = output_files().claim(*o.output); !free) return print_error(free.error());
+  if (const Status free = claim_output(*o.output); !free) return print_error(free.error());
   if (o.is_stuck) return extract_stuck(*asset, *o.output, o.out);
   auto chosen = choose_meshes(*asset, o.mesh);
   if (!chosen) return print_error(chosen.error());
@@ -246,11 +254,11 @@ int run_extract(const Verb& verb, std::span<char* const> args) {
     error.where = error.where.empty() ? o.input : o.input + ": " + error.where;
     return print_error(error);
   }
-  if (auto status = output_files().write(*o.output, *glb); !status) return print_error(status.error());
+  if (auto status = write_output(*o.output, *glb); !status) return print_error(status.error());
   if (o.out.json()) {
     if (!print_out(describe_json(*asset, *cuts, r.is_chain(), glb->size()))) return static_cast<int>(ErrorCode::kIo);
   } else if (!o.out.quiet) {
-    if (!print_out(describe_text(*asset, *cuts, r.is_chain(), glb->size(), *o.output))) {
+    if (!print_beside(*o.output, describe_text(*asset, *cuts, r.is_chain(), glb->size(), *o.output))) {
       return static_cast<int>(ErrorCode::kIo);
     }
   }
@@ -260,6 +268,8 @@ int run_extract(const Verb& verb, std::span<char* const> args) {
 }  // namespace
 
 const Verb kExtractVerb{"extract", "write a cut of an asset as a GLB",
+                        "Writes the triangles of one cut, or a chain of discrete levels of detail, as a binary glTF "
+                        "with the scene's nodes, names, instances, materials and textures.",
                         "meshlode extract scene.lode --error 0.001 --relative -o cut.glb\n"
                         "  meshlode extract scene.lode --triangles 20000 -o fallback.glb\n"
                         "  meshlode extract scene.lode --lods 4 -o levels.glb\n"

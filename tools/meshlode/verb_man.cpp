@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/version.h"
+#include "help_text.h"
 #include "man_page.h"
 #include "options.h"
 #include "outputs.h"
@@ -18,34 +19,43 @@ namespace {
 
 constexpr const char* kProgram = "meshlode";  ///< the page of the program itself
 
-/// File names and pages.
-std::vector<std::pair<std::string, std::string>> all_pages(const std::vector<VerbHelp>& verbs) {
-  std::vector<std::pair<std::string, std::string>> pages;
-  pages.emplace_back(man_page_name({}), program_man_page(verbs, program_version()));
+struct Page {
+  std::string verb, file, text;
+};
+
+/// As of --format.
+std::vector<Page> all_pages(const std::vector<VerbHelp>& verbs, bool is_markdown) {
+  std::vector<Page> pages;
+  if (is_markdown) {
+    pages.push_back({kProgram, "README.md", reference_index(verbs)});
+    for (const VerbHelp& verb : verbs) pages.push_back({verb.name, verb.name + ".md", reference_page(verb)});
+    return pages;
+  }
+  pages.push_back({kProgram, man_page_name({}), program_man_page(verbs, program_version())});
   for (const VerbHelp& verb : verbs) {
-    pages.emplace_back(man_page_name(verb.name), verb_man_page(verb, verbs, program_version()));
+    pages.push_back({verb.name, man_page_name(verb.name), verb_man_page(verb, verbs, program_version())});
   }
   return pages;
 }
 
 int run_man(const Verb& verb, std::span<char* const> args) {
   std::optional<std::string> page;
-  std::string folder;
+  std::string folder, format = "roff";
   std::vector<std::string> names{kProgram};
   for (const Verb* other : all_verbs()) names.emplace_back(other->name);
   OptionParser parser(verb);
-  parser.add_positional("page", page, "a verb; the program's own page where not given", names);
-  parser.add_value("-O,--output-folder", folder, "an existing folder to write all pages into");
+  parser.add_positional("PAGE", page, "a command (default: the program's own page)", names);
+  parser.group("Output");
+  parser.add_value("-O,--output-folder FOLDER", folder, "write all pages to this folder (default: one page to stdout)");
+  parser.add_value("--format", format, "format of the pages", {"roff", "markdown"});
   if (const auto exit_code = parser.parse(args)) return *exit_code;
   if (page && !folder.empty()) return print_error({ErrorCode::kUsage, "", "give a page or -O, not both"});
-  const auto pages = all_pages(all_verb_help());
-  const std::string wanted = man_page_name(page.value_or(kProgram) == kProgram ? "" : *page);
-  for (const auto& [name, text] : pages) {
+  for (const Page& one : all_pages(all_verb_help(), format == "markdown")) {
     if (!folder.empty()) {
-      const std::string path = (std::filesystem::path(folder) / name).string();
-      if (const Status written = write_text(path, text); !written) return print_error(written.error());
-    } else if (name == wanted) {
-      return print_out(text) ? 0 : static_cast<int>(ErrorCode::kIo);
+      const std::string path = (std::filesystem::path(folder) / one.file).string();
+      if (const Status written = write_text(path, one.text); !written) return print_error(written.error());
+    } else if (one.verb == page.value_or(kProgram)) {
+      return print_out(one.text) ? 0 : static_cast<int>(ErrorCode::kIo);
     }
   }
   return 0;
@@ -53,7 +63,12 @@ int run_man(const Verb& verb, std::span<char* const> args) {
 
 }  // namespace
 
-const Verb kManVerb{"man", "the manual pages, of the program or of a verb",
-                    "meshlode man build | man -l -\n  meshlode man -O /usr/local/share/man/man1", run_man};
+const Verb kManVerb{"man", "print the manual pages of the program and of its commands",
+                    "Prints one manual page, or writes all of them to a folder, as pages for man or in Markdown. They "
+                    "are made from the options of this program.",
+                    "meshlode man build | man -l -\n"
+                    "  meshlode man -O /usr/local/share/man/man1\n"
+                    "  meshlode man --format markdown -O docs/reference/cli",
+                    run_man};
 
 }  // namespace meshlode::cli

@@ -53,14 +53,19 @@ int run_measure(const Verb& verb, std::span<char* const> args) {
   MeasureOptions o;
   OptionParser parser(verb);
   parser.add_positional("FILE", o.input, "a .lode asset");
+  parser.group("Output");
+  parser.add_value("-o,--output FILE", o.output, "asset to write (required)");
+  parser.add_value("--error-tier", o.tier,
+                   "how errors of all meshes are found: estimated (qem), sampled (measured) or proven (certified)",
+                   all_names(format::kErrorTierNames));
+  add_output_options(parser, o.out);
+  parser.group("Source");
   add_source_options(parser, o.source);
-  parser.add_value("--error-tier", o.tier, "how errors are found, of all meshes", all_names(format::kErrorTierNames));
-  parser.add_value("-o,--output", o.output, "the asset to write");
+  parser.group("Resources");
   add_jobs_option(parser, o.jobs);
   add_max_decoded_option(parser, o.max_decoded);
-  add_output_options(parser, o.out);
   if (const auto exit_code = parser.parse(args)) return *exit_code;
-  if (!o.output) return print_error({ErrorCode::kUsage, "-o", "say where the asset goes"});
+  if (!o.output) return print_error({ErrorCode::kUsage, "-o", "name the asset to write"});
   if (const Status name = check_output_name("-o", *o.output, ".lode"); !name) return print_error(name.error());
   if (const Status given = check_source_options(verb.name, o.input, o.source); !given) {
     return print_error(given.error());
@@ -95,7 +100,9 @@ int run_measure(const Verb& verb, std::span<char* const> args) {
 
 }  // namespace
 
-const Verb kMeasureVerb{"measure", "measure an asset's errors by another tier, without building it again",
+const Verb kMeasureVerb{"measure", "measure an asset's errors by another tier, without a new build",
+                        "Computes the errors of a finished asset again, by another error tier, and writes the asset "
+                        "with them. Triangles stay as they are.",
                         "meshlode measure scene.lode --source scene.glb --error-tier certified -o certified.lode",
                         run_measure};
 

@@ -51,9 +51,10 @@ int run_merge(const Verb& verb, std::span<char* const> args) {
   std::string output;
   bool is_quiet = false;
   OptionParser parser(verb);
-  parser.add_positionals("manifest", paths, "the manifests of all shards, in any order");
-  parser.add_value("-o,--output", output, "the manifest to write");
-  parser.add_flag("-q,--quiet", is_quiet, "no summary; errors are still printed");
+  parser.add_positionals("MANIFEST", paths, "the manifests of all shards, in any order");
+  parser.group("Output");
+  parser.add_value("-o,--output FILE", output, "manifest to write (required)");
+  parser.add_flag("-q,--quiet", is_quiet, "print errors only");
   if (const auto exit_code = parser.parse(args)) return *exit_code;
   if (output.empty()) return print_error({ErrorCode::kUsage, "-o", "name the manifest to write"});
 
@@ -84,10 +85,13 @@ int run_merge(const Verb& verb, std::span<char* const> args) {
 
 }  // namespace
 
-const Verb kMergeVerb{"merge", "make one manifest of those of all shards of a batch, if nothing is missing",
-                      "meshlode build in/ -O out/ --shard 1/2 --manifest out/shard-1.json\n"
-                      "  meshlode build in/ -O out/ --shard 2/2 --manifest out/shard-2.json\n"
-                      "  meshlode merge out/shard-*.json -o out/manifest.json",
-                      run_merge};
+const Verb kMergeVerb{
+    "merge", "join the manifests of all shards of a batch into one",
+    "Reads the manifests that 'build --shard I/N --manifest FILE' wrote, checks that they belong to one batch, that no "
+    "shard and no asset is missing, and writes the manifest that one build of the whole batch would have written.",
+    "meshlode build in/ -O out/ --shard 1/2 --manifest out/shard-1.json\n"
+    "  meshlode build in/ -O out/ --shard 2/2 --manifest out/shard-2.json\n"
+    "  meshlode merge out/shard-*.json -o out/manifest.json",
+    run_merge};
 
 }  // namespace meshlode::cli

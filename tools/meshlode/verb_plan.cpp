@@ -14,8 +14,10 @@
 #include "material_looks.h"
 #include "measure_plan.h"
 #include "options.h"
+#include "outputs.h"
 #include "scene/import/import.h"
 #include "scene_passes.h"
+#include "streams.h"
 #include "verb.h"
 
 namespace meshlode::cli {
@@ -98,7 +100,7 @@ std::string plan_json(const scene::Scene& scene, const Planned& planned) {
 }
 
 int run_plan(const Verb& verb, std::span<char* const> args) {
-  std::string path, max_decoded = kDefaultMaxDecodedText;
+  std::string path, report = kStream, max_decoded = kDefaultMaxDecodedText;
   std::vector<std::string> allow_outside;
   BuildWords words;
   MeasureOptions measure;
@@ -106,15 +108,19 @@ int run_plan(const Verb& verb, std::span<char* const> args) {
   std::uint32_t jobs = 0;
   OutputOptions output;
   OptionParser parser(verb);
-  parser.add_positional("input", path, "a .gltf, .glb, .ply, .obj or .stl file");
-  parser.add_flag("--measure", is_measured,
-                  "build by the plan and with --keep all, three times each, and compare both");
-  parser.add_value("--device", measure.device, "with --measure: a Vulkan device by index or a part of its name");
-  add_build_options(parser, words);
-  add_allow_outside_option(parser, allow_outside);
-  add_max_decoded_option(parser, max_decoded);
-  add_jobs_option(parser, jobs);
+  parser.add_positional("INPUT", path, "a .gltf, .glb, .ply, .obj or .stl scene");
+  parser.group("Output");
+  add_report_option(parser, report);
   add_output_options(parser, output);
+  parser.add_flag("--measure", is_measured,
+                  "build with this plan and with --keep all, three times each, and compare both");
+  parser.add_value("--device NAME|INDEX", measure.device,
+                   "Vulkan device of --measure, by index or part of its name (default: the first that can)");
+  add_build_options(parser, words);
+  parser.group("Resources");
+  add_jobs_option(parser, jobs);
+  add_max_decoded_option(parser, max_decoded);
+  add_allow_outside_option(parser, allow_outside);
   if (const auto exit_code = parser.parse(args)) return *exit_code;
   const Result<std::uint64_t> decoded = parse_max_decoded(max_decoded);
   if (!decoded) return print_error(decoded.error());
@@ -128,13 +134,18 @@ int run_plan(const Verb& verb, std::span<char* const> args) {
   options.looks = &image_looks();
 
   JobLimit limit(jobs);
+  std::vector<FileId> files_read;
   const Result<scene::Scene> scene = scene::import_scene(path, {.repair = options.repair,
                                                                 .scene = words.scene,
+                                                                .files_read = &files_read,
                                                                 .max_decoded = *decoded,
                                                                 .may_lack_images = true,
                                                                 .allow_outside = std::move(*allowed),
                                                                 .linear_colors = options.linear_colors});
   if (!scene) return print_error(scene.error());
+  output_files().keep(files_read);
+  const Status free = output.json() ? claim_report(report, {".json"}) : claim_report(report, {});
+  if (!free) return print_error(free.error());
   const auto fail = [&](Error error) {
     error.where = path + (error.where.empty() ? "" : ": ") + error.where;
     return print_error(error);
@@ -154,12 +165,20 @@ int run_plan(const Verb& verb, std::span<char* const> args) {
     planned.measured = std::move(**measured);
   }
   const std::string text = output.json() ? plan_json(*scene, planned) : plan_text(*scene, planned);
-  return print_out(text) ? 0 : static_cast<int>(ErrorCode::kIo);
+  const Status written = write_output(report, text);
+  return written ? 0 : print_error(written.error());
 }
 
 }  // namespace
 
-const Verb kPlanVerb{"plan", "what a build will keep of a scene, and why; with --measure what that saves",
-                     "meshlode plan scene.glb\n  meshlode plan scene.glb --measure --format json", run_plan};
+const Verb kPlanVerb{
+    "plan", "show what a build keeps of a scene and why, without building it",
+    "Prints the settings and where each comes from, which attributes of each mesh are stored or left out and why, the "
+    "features of the scene that the asset carries, and the passes that a GPU will run. Bytes are estimates.\n\n"
+    "With --measure the scene is built twice, by the plan and with every attribute, and both are compared in bytes and "
+    "time.",
+    "meshlode plan scene.glb\n"
+    "  meshlode plan scene.glb --measure --format json",
+    run_plan};
 
 }  // namespace meshlode::cli

@@ -234,26 +234,31 @@ Result<Drawn> draw_on_cpu(const run::Asset& asset, const run::Camera& camera, co
 int run_render(const Verb& verb, std::span<char* const> args) {
   RenderOptions options;
   OptionParser parser(verb);
-  parser.add_positional("file", options.input, "a .lode asset");
-  parser.add_value("-o,--output", options.output, "the PNG to write (required)");
-  parser.add_value("--view", options.view,
-                   "shaded, clusters, triangles or levels; with --gpu also normals, pages, overdraw, paths, occluded",
+  parser.add_positional("FILE", options.input, "a .lode asset");
+  parser.group("Output");
+  parser.add_value("-o,--output FILE", options.output, "PNG to write (required)");
+  parser.add_value("--view", options.view, "what the colours show; those after levels need --gpu",
                    {std::begin(kGpuViews), std::end(kGpuViews)});
+  add_output_options(parser, options.report);
+  parser.add_flag("-v,--explain", options.explain, "print what the asset keeps and which passes run, and why");
+  parser.add_flag("--strict", options.is_strict, "fail and write nothing if an image cannot be drawn");
+  parser.group("Camera");
   add_camera_options(parser, options.camera);
-  parser.add_value("--error", options.error,
-                   "draw the uniform cut at this error in mesh units instead of --pixel-error");
-  parser.add_flag("--relative", options.is_relative, "--error is a fraction of each mesh's own diagonal");
+  parser.group("Cut");
+  parser.add_value("--error E", options.error,
+                   "draw the uniform cut at this error in mesh units, 0 or more (default: by --pixel-error)");
+  parser.add_flag("--relative", options.is_relative, "--error is a fraction of each mesh's diagonal");
   add_promise_option(parser, options.promise);
   add_bounds_options(parser, options.bounds);
+  parser.group("GPU");
   parser.add_flag("--gpu", options.gpu, "select and draw on a Vulkan device");
-  parser.add_value("--device", options.device, "with --gpu: an index or a part of the name (the first that can)");
-  parser.add_flag("--explain", options.explain, "say what the asset keeps, which passes run, and why");
-  parser.add_value("--force", options.force, "with --gpu: a pass that the scene does not call for",
+  parser.add_value("--device NAME|INDEX", options.device,
+                   "the device, by index or part of its name (default: the first that can)");
+  parser.add_value("--force", options.force, "run a pass that the scene does not need (default: none)",
                    {"double-sided", "alpha-mask", "occlusion", "hardware", "textures", "all"});
-  parser.add_flag("--strict", options.is_strict, "an image that cannot be drawn is an error, and nothing is written");
-  add_max_decoded_option(parser, options.max_decoded);
+  parser.group("Resources");
   add_jobs_option(parser, options.jobs);
-  add_output_options(parser, options.report);
+  add_max_decoded_option(parser, options.max_decoded);
   if (const auto exit_code = parser.parse(args)) return *exit_code;
   if (options.output.empty()) return print_error({ErrorCode::kUsage, "--output", "name the PNG to write"});
   if (const Status name = check_output_name("--output", options.output, ".png"); !name) {
@@ -310,9 +315,12 @@ int run_render(const Verb& verb, std::span<char* const> args) {
 
 }  // namespace
 
-const Verb kRenderVerb{"render", "a picture of a cut: shaded, or coloured by cluster, triangle or level",
-                       "meshlode render scene.lode -o scene.png --pixel-error 2 --view clusters\n"
-                       "  meshlode render scene.lode -o coarse.png --error 0.01 --relative --size 640x480",
-                       run_render};
+const Verb kRenderVerb{
+    "render", "draw a cut as a PNG: shaded, or coloured by cluster, triangle or level",
+    "Selects the clusters for a camera and an allowed error on the screen, or the uniform cut at one error, and draws "
+    "them with the reference rasterizer of the CPU or, with --gpu, on a Vulkan device. Both draw the same pixels.",
+    "meshlode render scene.lode -o scene.png --pixel-error 2 --view clusters\n"
+    "  meshlode render scene.lode -o coarse.png --error 0.01 --relative --size 640x480",
+    run_render};
 
 }  // namespace meshlode::cli

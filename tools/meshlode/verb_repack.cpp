@@ -59,14 +59,17 @@ int run_repack(const Verb& verb, std::span<char* const> args) {
   RepackOptions o;
   OptionParser parser(verb);
   parser.add_positional("FILE", o.input, "a .lode asset");
-  parser.add_value("-o,--output", o.output, "the asset to write");
-  parser.add_value("--codec", o.codec, "how pages are stored on disk", all_names(format::kWrittenCodecNames));
+  parser.group("Output");
+  parser.add_value("-o,--output FILE", o.output, "asset to write (required)");
+  parser.add_value("--codec", o.codec, "compression of pages on disk (required)",
+                   all_names(format::kWrittenCodecNames));
+  add_output_options(parser, o.out);
+  parser.group("Resources");
   add_jobs_option(parser, o.jobs);
   add_max_decoded_option(parser, o.max_decoded);
-  add_output_options(parser, o.out);
   if (const auto exit_code = parser.parse(args)) return *exit_code;
-  if (!o.output) return print_error({ErrorCode::kUsage, "-o", "say where the asset goes"});
-  if (!o.codec) return print_error({ErrorCode::kUsage, "--codec", "say how pages are to be stored"});
+  if (!o.output) return print_error({ErrorCode::kUsage, "-o", "name the asset to write"});
+  if (!o.codec) return print_error({ErrorCode::kUsage, "--codec", "name the codec"});
   if (const Status name = check_output_name("-o", *o.output, ".lode"); !name) return print_error(name.error());
   const std::optional<format::Codec> codec = value_in(format::kWrittenCodecNames, *o.codec);
   const Result<std::uint64_t> max_decoded = parse_max_decoded(o.max_decoded);
@@ -89,9 +92,11 @@ int run_repack(const Verb& verb, std::span<char* const> args) {
 
 }  // namespace
 
-const Verb kRepackVerb{"repack", "store an asset's pages with another codec, without building it again",
-                       "meshlode repack scene.lode -o small.lode --codec strips\n"
-                       "  meshlode repack scene.lode -o plain.lode --codec none",
-                       run_repack};
+const Verb kRepackVerb{
+    "repack", "store an asset's pages with another codec, without a new build",
+    "Decodes each page and stores it with another codec. The decoded content, and so its content hash, stays the same.",
+    "meshlode repack scene.lode -o small.lode --codec strips\n"
+    "  meshlode repack scene.lode -o plain.lode --codec none",
+    run_repack};
 
 }  // namespace meshlode::cli

@@ -68,7 +68,7 @@ Result<std::vector<std::string>> parse_knobs(std::string text) {
     const std::string name = text.substr(at, text.find(',', at) - at);
     if (std::find(known.begin(), known.end(), name) == known.end()) {
       return Error{ErrorCode::kUsage, "--knobs",
-                   "'" + name.substr(0, 64) + "' is no knob" + nearest_or_all(name, known)};
+                   "'" + name.substr(0, 64) + "' is not a knob" + nearest_or_all(name, known)};
     }
     names.push_back(name);
   }
@@ -223,21 +223,29 @@ int run_sweep(const Verb& verb, std::span<char* const> args) {
   SweepWords words;
   lab::SweepOptions options;
   OptionParser parser(verb);
-  parser.add_positional("scene", words.scene, "a .gltf, .glb, .ply, .obj or .stl scene");
-  parser.add_value("-o,--output", words.report, "the folder of the report (required); a sweep in it goes on");
-  parser.add_value("--budget", words.budget, "wall time to keep within, such as 90s, 5m or 1h; not given: all points");
-  parser.add_value("--want", words.want,
-                   "bounds and a goal, as in 'deviation<=1e-4, bytes min'; several with semicolons between them");
-  parser.add_value("--knobs", words.knobs,
-                   "names of the knobs to turn, comma by comma (docs/guides/sweep.md); not given: all");
-  parser.add_value("--rounds", options.rounds, "how often each asset is built (3)");
-  parser.add_value("--samples", words.samples,
-                   "area-uniform samples of deviations, each way (100000, or fewer for a short --budget)");
-  parser.add_value("--scene", options.scene_choice, "glTF: the name or index of the scene to build, or all");
-  add_allow_outside_option(parser, words.allow_outside);
-  add_max_decoded_option(parser, words.max_decoded);
-  add_jobs_option(parser, options.jobs);
+  parser.add_positional("SCENE", words.scene, "a .gltf, .glb, .ply, .obj or .stl scene");
+  parser.group("Output");
+  parser.add_value("-o,--output FOLDER", words.report,
+                   "folder of the report (required); a sweep that was interrupted continues there");
   add_output_options(parser, words.out);
+  parser.group("What is measured");
+  parser.add_value("--budget TIME", words.budget,
+                   "wall time to stay within, such as 90s, 5m or 1h (default: all points)");
+  parser.add_value("--want WISHES", words.want,
+                   "bounds and a goal, such as 'deviation<=1e-4, bytes min'; several are separated by semicolons "
+                   "(default: none)");
+  parser.add_value("--knobs NAMES", words.knobs,
+                   "settings to vary, comma-separated, as docs/guides/sweep.md lists them (default: all)");
+  parser.add_value("--rounds", options.rounds, "how often each asset is built");
+  parser.add_value("--samples", words.samples,
+                   "area-uniform samples per direction of a deviation (default: 100000, fewer for a short --budget)");
+  parser.group("Input");
+  parser.add_value("--scene NAME|INDEX|all", options.scene_choice,
+                   "which scene of a glTF to build (default: the file's)");
+  add_allow_outside_option(parser, words.allow_outside);
+  parser.group("Resources");
+  add_jobs_option(parser, options.jobs);
+  add_max_decoded_option(parser, words.max_decoded);
   if (const auto exit_code = parser.parse(args)) return *exit_code;
   words.scene = as_operand(words.scene);
   words.report = as_operand(words.report);
@@ -264,7 +272,11 @@ int run_sweep(const Verb& verb, std::span<char* const> args) {
 
 }  // namespace
 
-const Verb kSweepVerb{"sweep", "measure what each notch of accuracy costs in time and bytes, for one scene",
+const Verb kSweepVerb{"sweep", "measure what accuracy costs in time and bytes, for one scene",
+                      "Builds a scene with many combinations of settings and measures time, bytes and deviation of "
+                      "each. The report is a folder with a page for a browser, a CSV and a JSON file. A sweep that was "
+                      "interrupted continues where it stopped.\n\n"
+                      "With --want it names the settings that meet your limits best.",
                       "meshlode sweep scene.glb -o report/ --budget 5m\n"
                       "  meshlode sweep scene.glb -o report/ --want 'deviation<=1e-4, bytes min'",
                       run_sweep};

@@ -9,9 +9,9 @@ namespace meshlode::cli {
 namespace {
 
 const Verb* const kVerbs[] = {
-    &kBuildVerb,   &kMergeVerb,  &kPlanVerb,     &kDoctorVerb,     &kInfoVerb,
-    &kCompareVerb, &kSweepVerb,  &kValidateVerb, &kVerifyVerb,     &kRenderVerb,
-    &kExtractVerb, &kRepackVerb, &kMeasureVerb,  &kCompletionVerb, &kManVerb,
+    &kBuildVerb,   &kPlanVerb,     &kInfoVerb,   &kRenderVerb,     &kExtractVerb,
+    &kVerifyVerb,  &kValidateVerb, &kDoctorVerb, &kCompareVerb,    &kSweepVerb,
+    &kMeasureVerb, &kRepackVerb,   &kMergeVerb,  &kCompletionVerb, &kManVerb,
 };
 
 }  // namespace
@@ -30,7 +30,7 @@ const Verb* find_verb(std::string_view name) {
 std::vector<VerbHelp> all_verb_help() {
   std::vector<VerbHelp> all;
   for (const Verb* verb : all_verbs()) {
-    VerbHelp help{verb->name, verb->summary, verb->example, {}};
+    VerbHelp help{verb->name, verb->summary, verb->description, verb->example, {}};
     Verb asked = *verb;
     asked.listed_options = &help.options;
     asked.run(asked, {});

@@ -10,6 +10,8 @@
 #include "judge/validate/rules.h"
 #include "judge/validate/validate.h"
 #include "options.h"
+#include "streams.h"
+#include "terminal.h"
 #include "verb.h"
 
 namespace meshlode::cli {
@@ -27,14 +29,16 @@ bool is_no_asset(const judge::ValidationReport& report) {
 std::string describe(const std::string& path, const judge::ValidationReport& report, bool quiet) {
   std::string text;
   for (const judge::Finding& finding : report.findings) {
-    text += path + ": " + finding.id + (finding.invariant.empty() ? "" : " (" + finding.invariant + ")") + ": " +
-            finding.where + ": " + finding.detail + "\n";
+    text += path + ": " + colored(Stream::kOut, Color::kRed, finding.id) +
+            (finding.invariant.empty() ? "" : " (" + finding.invariant + ")") + ": " + finding.where + ": " +
+            finding.detail + "\n";
   }
   if (report.finding_count > report.findings.size()) {
     text += path + ": and " + std::to_string(report.finding_count - report.findings.size()) + " more findings\n";
   }
   if (report.finding_count == 0 && !quiet) {
-    text += path + ": valid, " + std::to_string(report.checked.size()) + " rules hold\n";
+    text += path + ": " + colored(Stream::kOut, Color::kGreen, "valid") + ", " + std::to_string(report.checked.size()) +
+            " rules hold\n";
   }
   return text;
 }
@@ -43,7 +47,8 @@ int run_validate(const Verb& verb, std::span<char* const> args) {
   std::vector<std::string> paths;
   OutputOptions output;
   OptionParser parser(verb);
-  parser.add_positionals("file", paths, "one or more .lode assets");
+  parser.add_positionals("FILE", paths, "one or more .lode assets, or - for stdin");
+  parser.group("Output");
   add_output_options(parser, output);
   if (const auto exit_code = parser.parse(args)) return *exit_code;
 
@@ -53,8 +58,14 @@ int run_validate(const Verb& verb, std::span<char* const> args) {
   json.begin_object();
   json.key("files");
   json.begin_array();
-  for (const std::string& path : paths) {
-    const Result<MappedFile> file = MappedFile::open(path);
+  for (const std::string& word : paths) {
+    const std::string path = input_name(word);
+    const Result<std::string> place = input_path(word);
+    if (!place) {
+      worst = std::max(worst, print_error(place.error()));
+      continue;
+    }
+    const Result<MappedFile> file = MappedFile::open(*place);
     if (!file) {
       worst = std::max(worst, print_error(file.error()));
       continue;
@@ -62,7 +73,7 @@ int run_validate(const Verb& verb, std::span<char* const> args) {
     const judge::ValidationReport report = judge::validate_asset(file->bytes());
     if (report.finding_count > 0) worst = std::max(worst, is_no_asset(report) ? kInvalid : kCheckFailed);
     if (is_no_asset(report)) {
-      if (const Status named = check_may_be_asset(path); !named) print_error(named.error());
+      if (const Status named = check_may_be_asset(*place); !named) print_error(named.error());
     }
     text += describe(path, report, output.quiet);
     json.begin_object();
@@ -84,7 +95,11 @@ int run_validate(const Verb& verb, std::span<char* const> args) {
 
 }  // namespace
 
-const Verb kValidateVerb{"validate", "check every structural rule of an asset, each finding with its id",
-                         "meshlode validate scene.lode\n  meshlode validate out/*.lode --format json", run_validate};
+const Verb kValidateVerb{"validate", "check every structural rule of an asset; each finding has an id",
+                         "Checks the file's structure without its source: sections, tables, pages, the DAG, spheres, "
+                         "errors and borders. Each finding names the rule by its id, and the place in the file.",
+                         "meshlode validate scene.lode\n"
+                         "  meshlode validate out/*.lode --format json",
+                         run_validate};
 
 }  // namespace meshlode::cli

@@ -22,11 +22,18 @@
 #include "run/read/asset.h"
 #include "run/select/select.h"
 #include "source_scene.h"
+#include "terminal.h"
 #include "verb.h"
 
 namespace meshlode::cli {
 
 namespace {
+
+constexpr ColoredWord kStatusWords[] = {{"ok", Color::kGreen},
+                                        {"FAILED", Color::kRed},
+                                        {"skipped", Color::kYellow},
+                                        {"verified:", Color::kGreen},
+                                        {"NOT", Color::kRed}};
 
 std::string describe(const judge::VerifyReport& report, bool quiet) {
   std::string text;
@@ -72,6 +79,19 @@ void write_brackets(JsonWriter& json, std::span<const judge::CutBracket> bracket
   json.end_array();
 }
 
+void write_surfaces(JsonWriter& json, const judge::IdTotals& totals) {
+  json.key("surfaces");
+  json.begin_object();
+  json.field("pictures", totals.pictures);
+  json.field("pixels", totals.all.pixels);
+  json.field("astray", totals.all.astray);
+  json.field("farthest_px", totals.all.farthest_px);
+  json.field("worst_share", totals.worst.share());
+  json.field("worst_picture", totals.worst_picture);
+  json.field("beyond_limit", totals.beyond_limit);
+  json.end_object();
+}
+
 std::string to_json(const std::string& path, const std::string& source, const judge::VerifyOptions& options,
                     const judge::VerifyReport& report) {
   JsonWriter json;
@@ -114,6 +134,7 @@ std::string to_json(const std::string& path, const std::string& source, const ju
     json.end_object();
   }
   if (!report.brackets.empty()) write_brackets(json, report.brackets);
+  if (report.surfaces) write_surfaces(json, *report.surfaces);
   if (!report.promises.empty()) {
     json.key("promises");
     json.begin_array();
@@ -164,32 +185,41 @@ int run_verify(const Verb& verb, std::span<char* const> args) {
   judge::VerifyOptions options;
   OutputOptions output;
   OptionParser parser(verb);
-  parser.add_positional("file", path, "a .lode asset");
-  parser.add_flag("--quick", options.is_quick,
-                  "structure, border proof and one measured cut a mesh; the source's triangles are not looked for");
+  parser.add_positional("FILE", path, "a .lode asset");
+  parser.group("Source");
   add_source_options(parser, source_options);
+  parser.group("Checks");
+  parser.add_flag(
+      "--quick", options.is_quick,
+      "only structure, the border proof and one measured cut per mesh; does not search the source triangles");
   parser.add_value("--cuts", options.uniform_cuts, "uniform cuts per mesh that cross-check the border proof");
   parser.add_value("--cameras", options.cameras, "random cameras that cross-check selection and hierarchy");
-  parser.add_value("--deviation-cuts", deviation_cuts,
-                   "uniform cuts per mesh that are measured against the source, or all of them: all");
+  parser.add_value("--deviation-cuts N|all", deviation_cuts,
+                   "uniform cuts per mesh that are measured against the source");
   parser.add_value("--deviation-budget", options.deviation_budget,
-                   "splits for each triangle, after which what is open of such a cut is called undecided");
+                   "splits per triangle of such a cut; what is open after that is reported as undecided");
   parser.add_value("--samples", options.deviation_samples,
-                   "area-uniform samples of each such cut, each way, for promises besides positions (200000)");
-  parser.add_value("--seed", options.seed, "of the random cameras");
-  parser.add_flag("--gpu", gpu_options.is_on, "let a Vulkan device decode, select and draw the same, and compare");
-  parser.add_value("--device", gpu_options.device, "with --gpu: an index or a part of the name (the first that can)");
-  parser.add_value("--orbits", gpu_options.orbits, "with --gpu: cameras around the scene, judged against the source");
-  parser.add_value("--path", gpu_options.path, "with --gpu: a file of cameras, ex ey ez tx ty tz [fovy [near]] a line");
-  parser.add_value("--out-dir", gpu_options.out_folder,
-                   "with --gpu: an existing folder for heat maps of the worst cameras and a report, gpu.json");
-  parser.add_value("--pixel-error", gpu_options.pixel_error, "with --gpu: allowed displacement in pixels (1)");
-  add_promise_option(parser, gpu_options.promise);
-  parser.add_flag("--explain", gpu_options.is_explained,
-                  "say what the asset keeps, and with --gpu which passes the device runs, and why");
-  add_max_decoded_option(parser, max_decoded_text);
-  add_jobs_option(parser, jobs);
+                   "area-uniform samples per direction of such a cut, for the promises texels and appearance, 1 to "
+                   "100000000");
+  parser.add_value("--seed", options.seed, "seed of the random cameras");
+  parser.group("Output");
   add_output_options(parser, output);
+  parser.add_flag("-v,--explain", gpu_options.is_explained,
+                  "print what the asset keeps and why; with --gpu also which passes the device runs");
+  parser.group("GPU");
+  parser.add_flag("--gpu", gpu_options.is_on, "also decode, select and draw on a Vulkan device, and compare");
+  parser.add_value("--device NAME|INDEX", gpu_options.device,
+                   "the device, by index or part of its name (default: the first that can)");
+  parser.add_value("--orbits", gpu_options.orbits, "cameras around the scene that are judged against the source");
+  parser.add_value("--path FILE", gpu_options.path,
+                   "cameras to judge as well, one 'ex ey ez tx ty tz [fovy [near]]' per line (default: none)");
+  parser.add_value("--out-dir FOLDER", gpu_options.out_folder,
+                   "existing folder for heat maps of the worst cameras and the report gpu.json (default: none)");
+  parser.add_value("--pixel-error T", gpu_options.pixel_error, "allowed error on the screen in pixels");
+  add_promise_option(parser, gpu_options.promise);
+  parser.group("Resources");
+  add_jobs_option(parser, jobs);
+  add_max_decoded_option(parser, max_decoded_text);
   if (const auto exit_code = parser.parse(args)) return *exit_code;
   if (gpu_options.promise != "position" && !gpu_options.is_on) {
     return print_error(
@@ -238,7 +268,7 @@ int run_verify(const Verb& verb, std::span<char* const> args) {
     }
   }
   if (!print_out(output.json() ? to_json(path, source_options.path, options, report)
-                               : describe(report, output.quiet))) {
+                               : with_colored_words(describe(report, output.quiet), kStatusWords))) {
     return static_cast<int>(ErrorCode::kIo);
   }
   return report.finding_count == 0 ? 0 : static_cast<int>(ErrorCode::kCheckFailed);
@@ -247,6 +277,10 @@ int run_verify(const Verb& verb, std::span<char* const> args) {
 }  // namespace
 
 const Verb kVerifyVerb{"verify", "prove an asset against the scene it was built from",
+                       "Checks that every source triangle is there, that no cut has a crack, that selection by "
+                       "hierarchy and by the flat rule agree, and that cuts deviate from the source by no more than "
+                       "the asset states. It shares no code with the builder.\n\n"
+                       "With --gpu a Vulkan device decodes, selects and draws the same, and must agree bit for bit.",
                        "meshlode verify scene.lode --source scene.glb\n"
                        "  meshlode verify scene.lode --source scene.glb --quick\n"
                        "  meshlode verify scene.lode --source scene.glb --cuts 1000 --cameras 500 --seed 7\n"

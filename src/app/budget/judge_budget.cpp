@@ -156,7 +156,7 @@ class SchemaWalk {
   }
 
   Status take_item() {
-    if (!is_list(*at_)) return usage(place() + " is no list");
+    if (!is_list(*at_)) return usage(place() + " is not a list");
     at_ = &resolve((*at_)["items"], root_);
     return Ok{};
   }
@@ -172,13 +172,13 @@ class SchemaWalk {
     if (has_keys(*at_) && !is_null) {
       std::string keys;
       for (const std::string& name : keys_of(*at_)) keys += (keys.empty() ? "" : ", ") + name;
-      return usage(place() + " is no value: it has the keys " + printable(keys, 400));
+      return usage(place() + " is not a value: it has the keys " + printable(keys, 400));
     }
     if (std::holds_alternative<double>(condition.value) && !allows(*at_, "number") && !allows(*at_, "integer")) {
-      return usage(place() + " is no number");
+      return usage(place() + " is not a number");
     }
     if (std::holds_alternative<std::string>(condition.value) && !allows(*at_, "string")) {
-      return usage(place() + " is no text");
+      return usage(place() + " is not a text");
     }
     if (std::holds_alternative<bool>(condition.value) && !allows(*at_, "boolean")) {
       return usage(place() + " is neither true nor false");
@@ -367,7 +367,7 @@ class DocumentWalk {
 }  // namespace
 
 std::string BrokenCondition::message() const {
-  std::string text = "fails on " + printable(condition, 200) + ": " + where;
+  std::string text = "budget exceeded: " + printable(condition, 200) + ": " + where;
   if (!name.empty()) text += " (" + name + ")";
   text += " is " + printable(value, 80);
   return others == 0 ? text : text + ", and " + std::to_string(others) + " more";
@@ -387,7 +387,7 @@ Result<std::vector<BrokenCondition>> judge_budget(const std::vector<Condition>& 
   std::vector<BrokenCondition> broken;
   if (conditions.empty()) return broken;
   const Json json = Json::parse(document.begin(), document.end(), nullptr, false);
-  if (json.is_discarded()) return Error{ErrorCode::kInvalid, "", "the document is no JSON"};
+  if (json.is_discarded()) return Error{ErrorCode::kInvalid, "", "the document is not JSON"};
   for (const Condition& condition : conditions) {
     TRY_LET(judged, DocumentWalk(condition).judge(json));
     if (*judged) broken.push_back(std::move(**judged));

@@ -30,7 +30,7 @@ struct BrokenCondition {
   std::string value;         ///< what is there, as JSON
   std::uint64_t others = 0;  ///< further elements for which it holds
 
-  /// "fails on any(meshes).stuck_groups>0: meshes[3].stuck_groups (rock) is 2, and 1 more"
+  /// "budget exceeded: any(meshes).stuck_groups>0: meshes[3].stuck_groups (rock) is 2, and 1 more"
   [[nodiscard]] std::string message() const;
 };
 

@@ -31,12 +31,12 @@ bool add_row(std::string& out, const std::string& name, const Change& change) {
   const auto difference = change.difference();
   std::string signed_text = number_text(difference, change.kind);
   if (difference && *difference > 0.0) signed_text = "+" + signed_text;
-  append_format(out, "  %-32s %16s %16s %16s", name.c_str(), number_text(change.before, change.kind).c_str(),
+  append_format(out, "  %-29s %13s %13s %12s", name.c_str(), number_text(change.before, change.kind).c_str(),
                 number_text(change.after, change.kind).c_str(), signed_text.c_str());
   if (const auto ratio = change.ratio()) {
-    append_format(out, " %9.4f\n", *ratio);
+    append_format(out, " %7.4f\n", *ratio);
   } else {
-    append_format(out, " %9s\n", "-");
+    append_format(out, " %7s\n", "-");
   }
   return true;
 }
@@ -71,7 +71,7 @@ void add_one_sided(std::string& rows, const char* word, const std::vector<OneSid
 void add_settings(std::string& out, const std::vector<SettingChange>& settings) {
   std::string rows;
   for (std::size_t i = 0; i < settings.size() && i < kMaxRows; ++i) {
-    append_format(rows, "  %-32s %s -> %s\n", printable(settings[i].key, 32).c_str(),
+    append_format(rows, "  %-29s %s -> %s\n", printable(settings[i].key, 32).c_str(),
                   printable(settings[i].before, 160).c_str(), printable(settings[i].after, 160).c_str());
   }
   add_more(rows, settings.size(), "settings");
@@ -176,7 +176,7 @@ std::string comparison_text(const AssetComparison& comparison) {
   for (const SectionChange& section : comparison.sections) rows += rows_of(section.name + " ", section.changes);
   std::string body;
   std::string head;
-  append_format(head, "\n  %-32s %16s %16s %16s %9s", "", "old", "new", "change", "ratio");
+  append_format(head, "\n  %-29s %13s %13s %12s %7s", "", "old", "new", "change", "ratio");
   add_rows(body, head, rows);
   add_settings(body, comparison.settings);
   add_meshes(body, comparison);

@@ -32,11 +32,10 @@ struct Words {
   const char* hard_case = "";  ///< of docs/reference/hard-cases.md
 };
 
-constexpr Words kEmpty{
-    "nothing-to-draw", "asset of which nothing is left to draw",
-    "look at the source with `doctor`, and at what was left out: build --strict refuses such a scene"};
-constexpr Words kFewGroups{"error-in-few-groups", "a twentieth of the groups holds half of the first level's error",
-                           "look at them with `extract --error`: spikes and slivers there keep the whole level fine"};
+constexpr Words kEmpty{"nothing-to-draw", "asset with nothing left to draw",
+                       "check the source with `doctor`, and what was left out; build --strict refuses such a scene"};
+constexpr Words kFewGroups{"error-in-few-groups", "5% of the groups cause half of the first level's error",
+                           "check them with `extract --error`: spikes and slivers there keep the whole level fine"};
 constexpr Words kDropped{"dropped-faces", "triangles of the source that the build dropped",
                          "remove degenerate and doubled faces from the source", "repeated"};
 constexpr Words kCollapsed{"grid-collapsed", "triangles of level 0 that have no area on the position grid",
@@ -57,11 +56,11 @@ constexpr std::array<StuckWords, 6> kStuck{{
      {"stuck-locked", "groups that could not be simplified: too much is shared with other groups",
       "weld seams, and remove T-junctions and points of hundreds of triangles around them"}},
     {StuckReason::kFlips,
-     {"stuck-flips", "groups that could not be simplified: every collapse would turn a triangle over",
+     {"stuck-flips", "groups that could not be simplified: every collapse would flip a triangle",
       "remove needles and folded faces there"}},
     {StuckReason::kSeams,
      {"stuck-seams", "groups that could not be simplified: seams of attributes or borders of materials",
-      "make fewer UV islands, smooth normals where no edge is meant, and join materials in an atlas"}},
+      "make fewer UV islands, smooth normals except at sharp edges, and join materials in an atlas"}},
     {StuckReason::kComponents,
      {"stuck-components", "groups that could not be simplified: loose pieces that share no vertex",
       "weld pieces that touch; draw leaves and gravel as instances or cards"}},

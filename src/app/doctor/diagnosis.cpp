@@ -95,10 +95,8 @@ std::string counted(std::uint64_t count, std::string_view many) {
 void add_left_out(std::vector<Diagnosis>& diagnoses, std::string_view what, std::string_view why) {
   Diagnosis words;
   words.id = kLeftOutId;
-  words.title = "things of the source that no asset has";
-  words.remedy =
-      "where it is meant to be kept, export it in a form that is read (docs/reference/input.md), and put missing files "
-      "in place";
+  words.title = "parts of the source that assets do not store";
+  words.remedy = "to keep it, export it in a supported form (docs/reference/input.md), and put missing files in place";
   DiagnosisPlace place;
   place.where = printable(what, 120);
   place.count = 1;
@@ -228,7 +226,8 @@ Result<std::vector<std::string>> find_failures(std::string_view words, const std
   do {
     const std::string_view word = words.substr(0, words.find(','));
     words.remove_prefix(std::min(words.size(), word.size() + 1));
-    if (word.empty()) return Error{ErrorCode::kUsage, "--fail-on", "give ids between commas, high, medium or any"};
+    if (word.empty())
+      return Error{ErrorCode::kUsage, "--fail-on", "give fault ids, high, medium or any, comma-separated"};
     if (std::find(names.begin(), names.end(), word) == names.end()) {
       return Error{ErrorCode::kUsage, "--fail-on",
                    "no fault is called '" + printable(word) + "'" + nearest_or_all(word, names)};

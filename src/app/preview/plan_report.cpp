@@ -2,6 +2,8 @@
 #include "app/preview/plan_report.h"
 
 #include <cmath>
+#include <map>
+#include <utility>
 
 #include "base/append_format.h"
 #include "base/byte_size.h"
@@ -22,13 +24,37 @@ void add_line(std::string& out, bool kept, const std::string& what, const std::s
                 printable(reason, 300).c_str());
 }
 
-void add_attribute(std::string& out, const PlannedAttribute& item) {
+std::string bytes_text(double bytes, bool kept) {
+  return whole(bytes) > 0 ? "; about " + byte_size_text(whole(bytes)) + (kept ? "" : " saved") : std::string();
+}
+
+/// What several meshes leave out for one reason is said once, after them.
+struct SharedLoss {
+  std::size_t meshes = 0;
+  double bytes = 0.0;
+};
+using SharedLosses = std::map<std::pair<std::string, std::string>, SharedLoss>;  ///< by attribute and reason
+
+SharedLosses find_shared_losses(const ScenePlan& plan) {
+  SharedLosses losses;
+  for (const PlannedMesh& mesh : plan.meshes) {
+    for (const PlannedAttribute& item : mesh.attributes) {
+      if (item.decision.kept) continue;
+      SharedLoss& loss = losses[{item.decision.attribute, item.decision.reason}];
+      loss.meshes += 1;
+      loss.bytes += item.bytes;
+    }
+  }
+  std::erase_if(losses, [](const auto& loss) { return loss.second.meshes == 1; });
+  return losses;
+}
+
+void add_attribute(std::string& out, const PlannedAttribute& item, const SharedLosses& shared) {
   const builder::PlanDecision& decision = item.decision;
+  if (!decision.kept && shared.contains({decision.attribute, decision.reason})) return;
   std::string reason = decision.reason;
   if (!item.precision.empty()) reason += "; " + item.precision;
-  if (whole(item.bytes) > 0) {
-    reason += "; about " + byte_size_text(whole(item.bytes)) + (decision.kept ? "" : " saved");
-  }
+  reason += bytes_text(item.bytes, decision.kept);
   append_format(out, "    %-9s %s: %s\n", decision.kept ? "kept" : "left out", decision.attribute.c_str(),
                 reason.c_str());
 }
@@ -42,6 +68,7 @@ void add_more(std::string& out, std::size_t total, const char* what) {
 
 std::string describe_plan(const ScenePlan& plan) {
   std::string out = "attributes (bytes are estimates)\n";
+  const SharedLosses shared = find_shared_losses(plan);
   std::size_t small = 0;
   for (std::size_t i = 0; i < plan.meshes.size(); ++i) {
     const PlannedMesh& mesh = plan.meshes[i];
@@ -49,12 +76,16 @@ std::string describe_plan(const ScenePlan& plan) {
     if (i >= kMaxRows) continue;
     append_format(out, "  %s: %s triangles, about %s\n", printable(mesh.label, 120).c_str(),
                   grouped_digits(mesh.triangles).c_str(), byte_size_text(whole(mesh.bytes)).c_str());
-    for (const PlannedAttribute& item : mesh.attributes) add_attribute(out, item);
+    for (const PlannedAttribute& item : mesh.attributes) add_attribute(out, item, shared);
     if (mesh.is_whole)
       append_format(out, "    passed through: one cluster holds all of it, there is nothing to coarsen\n");
     if (mesh.triangles == 0) append_format(out, "    passed through: it has no triangles\n");
   }
   add_more(out, plan.meshes.size(), "meshes");
+  for (const auto& [what, loss] : shared) {
+    append_format(out, "  left out  %s, %zu of %zu meshes: %s%s\n", what.first.c_str(), loss.meshes, plan.meshes.size(),
+                  what.second.c_str(), bytes_text(loss.bytes, false).c_str());
+  }
   append_format(out, "features\n");
   for (std::size_t i = 0; i < plan.features.size() && i < kMaxRows; ++i) {
     add_line(out, plan.features[i].kept, plan.features[i].what, plan.features[i].reason);

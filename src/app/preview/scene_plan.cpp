@@ -90,8 +90,8 @@ class MeshPlanner {
 
   void add_positions(const builder::GridPlan& grid, double bytes) {
     char text[96];
-    std::snprintf(text, sizeof text, "step %u * 2^%d, %d bits a coordinate at most", grid.grid.mantissa, grid.grid.log2,
-                  bits_for(grid.largest_side / grid.grid.step()));
+    std::snprintf(text, sizeof text, "step %u * 2^%d, at most %d bits per coordinate", grid.grid.mantissa,
+                  grid.grid.log2, bits_for(grid.largest_side / grid.grid.step()));
     builder::PlanDecision decision{out_.label + ": POSITION", true, "always stored", false, "POSITION"};
     if (own_.grid_step > 0.0) decision.reason = "the grid that was given";
     if (own_.position_error > 0.0) decision.reason = "the budget that was given";
@@ -126,14 +126,14 @@ class MeshPlanner {
 
   [[nodiscard]] std::string normal_precision() const {
     char text[96];
-    std::snprintf(text, sizeof text, "within %g degrees, %d bits a coordinate at most", own_.normal_error,
+    std::snprintf(text, sizeof text, "within %g degrees, at most %d bits per coordinate", own_.normal_error,
                   bits_for(2.0 * builder::normal_scale_of(encode_)));
     return text;
   }
 
   [[nodiscard]] std::string uv_precision(std::uint32_t set) const {
     char text[96];
-    std::snprintf(text, sizeof text, "step 2^%d, %d bits a coordinate at most", uv_log2_[set],
+    std::snprintf(text, sizeof text, "step 2^%d, at most %d bits per coordinate", uv_log2_[set],
                   bits_for(uv_extent_[set] / format::exp2_exact(uv_log2_[set])));
     return text;
   }

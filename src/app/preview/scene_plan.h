@@ -18,7 +18,7 @@ namespace meshlode::app {
 
 struct PlannedAttribute {
   builder::PlanDecision decision;
-  std::string precision;  ///< "within 0.1 degrees, 11 bits a coordinate at most"; empty of what is not stored
+  std::string precision;  ///< "within 0.1 degrees, at most 11 bits per coordinate"; empty of what is not stored
   /// Of all levels' decoded pages, estimated: what it takes, or what keeping it would add.
   double bytes = 0.0;
 };

@@ -2,7 +2,9 @@
 #include "app/report/rows.h"
 
 #include <map>
+#include <span>
 
+#include "app/report/fold_reasons.h"
 #include "base/append_format.h"
 #include "base/hash.h"
 #include "base/printable.h"
@@ -44,7 +46,7 @@ void add_count_rows(std::vector<Row>& rows, const run::Asset& asset, const Asset
                      " vertices in " + grouped_digits(asset.clusters().size()) + " clusters, " +
                      grouped_digits(asset.groups().size()) + " groups, " + grouped_digits(info.levels) + " level(s)"});
   rows.push_back(
-      {"roots", grouped_digits(info.roots) + " (at most " + grouped_digits(info.max_roots_per_mesh) + " a mesh), " +
+      {"roots", grouped_digits(info.roots) + " (at most " + grouped_digits(info.max_roots_per_mesh) + " per mesh), " +
                     grouped_digits(info.stuck_groups) + " stuck group(s)" +
                     (info.border_groups > 0 ? ", " + grouped_digits(info.border_groups) + " of locked borders" : "")});
   rows.push_back({"dropped", grouped_digits(info.dropped_degenerate) + " degenerate, " +
@@ -61,26 +63,30 @@ void add_more_row(std::vector<Row>& rows, std::size_t total, const char* what) {
   if (total > kMaxRows) rows.push_back({"", more_text(total, what)});
 }
 
+void add_reason_rows(std::vector<Row>& rows, const char* label, std::span<const Reason> reasons, std::size_t meshes,
+                     const char* more) {
+  const std::vector<Reason> folded = fold_reasons(reasons, meshes);
+  for (std::size_t i = 0; i < folded.size() && i < kMaxRows; ++i) {
+    rows.push_back({label, printable(folded[i].what, 120) + ": " + printable(folded[i].why, 160)});
+  }
+  add_more_row(rows, folded.size(), more);
+}
+
 /// Settings, the plan and what was left out, as META has them.
-void add_plan_rows(std::vector<Row>& rows, const MetaInfo& meta) {
+void add_plan_rows(std::vector<Row>& rows, const MetaInfo& meta, std::size_t meshes) {
   std::size_t count = 0;
   for (const std::string& line : meta.setting_lines) {
     if (count++ < kMaxRows) rows.push_back({"settings", printable(line, 400)});
   }
   add_more_row(rows, count, "meshes' settings");
-  // What the plan leaves out is among what was left out, with its reason.
-  count = 0;
+  std::vector<Reason> kept, left_out;
   for (const MetaInfo::Decision& decision : meta.decisions) {
-    if (!decision.is_kept || count++ >= kMaxRows) continue;
-    rows.push_back({"kept", printable(decision.what, 120) + ": " + printable(decision.reason, 160)});
+    if (decision.is_kept) kept.push_back({decision.what, decision.reason});
   }
-  add_more_row(rows, count, "kept attributes");
-  count = 0;
-  for (const MetaInfo::LeftOut& left : meta.left_outs) {
-    if (count++ >= kMaxRows) continue;
-    rows.push_back({"left out", printable(left.what, 120) + ": " + printable(left.why, 160)});
-  }
-  add_more_row(rows, count, "left out");
+  // What the plan leaves out is among these, with its reason.
+  for (const MetaInfo::LeftOut& left : meta.left_outs) left_out.push_back({left.what, left.why});
+  add_reason_rows(rows, "kept", kept, meshes, "kept attributes");
+  add_reason_rows(rows, "left out", left_out, meshes, "left out");
 }
 
 }  // namespace
@@ -89,22 +95,24 @@ std::vector<Row> summary_rows(const run::Asset& asset, const AssetInfo& info) {
   std::vector<Row> rows;
   add_file_rows(rows, asset, info);
   add_count_rows(rows, asset, info);
-  add_plan_rows(rows, info.meta);
+  add_plan_rows(rows, info.meta, asset.meshes().size());
   return rows;
 }
 
 std::vector<std::string> mesh_lines(const run::Asset& asset, std::uint32_t id, const MeshInfo& info) {
   const format::MeshRecord& mesh = asset.meshes()[id];
-  std::vector<std::string> lines(2);
-  append_format(lines[0], "%s source triangles, %s stored (%.3fx), diagonal %.6g, grid step %u * 2^%d, tier %s",
+  std::vector<std::string> lines(3);
+  append_format(lines[0], "%s source triangles, %s stored (%.3fx), diagonal %.6g",
                 grouped_digits(mesh.source_triangles).c_str(), grouped_digits(info.triangles).c_str(),
                 mesh.source_triangles == 0
                     ? 0.0
                     : static_cast<double>(info.triangles) / static_cast<double>(mesh.source_triangles),
-                mesh.diagonal, mesh.grid.mantissa, mesh.grid.log2, format::name_of(mesh.error_tier));
-  append_format(lines[1], "%llu root(s) with %llu triangles, %llu stuck group(s), level 0 deviates by %.3g",
+                mesh.diagonal);
+  append_format(lines[1], "tier %s, grid step %u * 2^%d, level 0 deviates by %.3g", format::name_of(mesh.error_tier),
+                mesh.grid.mantissa, mesh.grid.log2, static_cast<double>(mesh.level0_deviation));
+  append_format(lines[2], "%llu root(s) with %llu triangles, %llu stuck group(s)",
                 static_cast<unsigned long long>(info.roots), static_cast<unsigned long long>(info.root_triangles),
-                static_cast<unsigned long long>(info.stuck_groups), static_cast<double>(mesh.level0_deviation));
+                static_cast<unsigned long long>(info.stuck_groups));
   if (info.part_of) lines.push_back("pieces of mesh " + std::to_string(*info.part_of));
   if (!asset.promises().empty()) {
     const format::PromiseMeshRecord& promise = asset.promises()[id];

@@ -20,43 +20,57 @@ namespace meshlode::app {
 
 namespace {
 
+constexpr const char* kQuality = "Quality";
+constexpr const char* kPrecision = "Precision and attributes";
+constexpr const char* kInput = "Input";
+constexpr const char* kAdvanced = "Advanced";
+
 constexpr std::array<SettingInfo, kSettingCount> kSettings{{
-    {Setting::kErrorTier, "error-tier",
-     "what the errors are worth: qem estimates, measured measures, certified proves; auto: the preset's", "auto", true},
-    {Setting::kPreset, "preset", "fast builds fastest and estimates errors, best spends time on clusters and bytes",
-     "default", false},
-    {Setting::kAttributes, "attributes", "auto keeps what the materials call for, none positions only", "auto", true},
-    {Setting::kKeep, "keep",
-     "attributes to store all the same: NORMAL, TEXCOORD_0 to 3, COLOR_0, comma by comma, or all", "", true},
-    {Setting::kDrop, "drop", "attributes to leave out all the same", "", true},
-    {Setting::kGrid, "grid", "auto, or a step in mesh units for meshes that must abut", "auto", true},
-    {Setting::kPositionError, "position-error", "auto, or the largest distance a vertex may move, mesh units", "auto",
+    {Setting::kErrorTier, "error-tier", "", kQuality,
+     "what the stored errors are: estimated (qem), sampled (measured) or proven (certified); auto: the preset's",
+     "auto", true},
+    {Setting::kPreset, "preset", "", kQuality,
+     "build time against quality: fast estimates errors (qem), best spends more time on clusters and strips", "default",
+     false},
+    {Setting::kAttributes, "attributes", "", kPrecision, "auto: what the materials use; none: positions only", "auto",
      true},
-    {Setting::kNormalError, "normal-error", "the largest angle a stored normal may be off, degrees", "0.1", true},
-    {Setting::kUvError, "uv-error", "auto, or the largest move of a UV: UV units, or 0.25px for texels", "auto", true},
-    {Setting::kCodec, "codec", "disk codec of the pages", "strips", false},
-    {Setting::kStripEffort, "strip-effort", "how long fewer bytes a triangle are looked for; auto: as the preset",
+    {Setting::kKeep, "keep", " NAMES", kPrecision,
+     "attributes to store in any case: NORMAL, TEXCOORD_0 to TEXCOORD_3, COLOR_0, comma-separated, or all", "", true},
+    {Setting::kDrop, "drop", " NAMES", kPrecision, "attributes never to store, comma-separated", "", true},
+    {Setting::kGrid, "grid", " auto|STEP", kPrecision,
+     "step of the position grid in mesh units, above 0, for meshes that must fit together; not with --position-error",
+     "auto", true},
+    {Setting::kPositionError, "position-error", " auto|D", kPrecision,
+     "largest distance that a vertex may move, mesh units, above 0", "auto", true},
+    {Setting::kNormalError, "normal-error", " DEGREES", kPrecision,
+     "largest error of a stored normal in degrees, above 0 and up to 180", "0.1", true},
+    {Setting::kUvError, "uv-error", " auto|E|Npx", kPrecision,
+     "largest error of a texture coordinate, above 0, in UV units or, as in 0.25px, in texels", "auto", true},
+    {Setting::kCodec, "codec", "", "Output", "compression of pages on disk", "strips", false},
+    {Setting::kStripEffort, "strip-effort", "", kAdvanced, "time spent on shorter triangle strips; auto: the preset's",
      "auto", false},
-    {Setting::kClusterTriangles, "cluster-triangles", "the most triangles of a cluster, 1 to 256", "128", false},
-    {Setting::kGroupClusters, "group-clusters", "how many clusters are simplified together, about: 4 to 32", "20",
+    {Setting::kClusterTriangles, "cluster-triangles", " N", kAdvanced, "maximum triangles per cluster, 1 to 256", "128",
      false},
-    {Setting::kRepair, "repair",
-     "remove unusable, degenerate and duplicate triangles, orient the rest, split where it is no surface", "false",
-     false},
-    {Setting::kLinearColors, "linear-colors", "colour levels of PLY and STL are taken as linear, not as sRGB", "false",
-     false},
-    {Setting::kKeepTopology, "keep-topology",
-     "every cut of a manifold is a manifold with its holes, handles and pieces, for more triangles", "false", false},
-    {Setting::kLockBorders, "lock-borders",
-     "open borders keep every vertex in every cut, so that tiles built apart with one --grid abut, for more triangles",
+    {Setting::kGroupClusters, "group-clusters", " N", kAdvanced,
+     "target number of clusters that are simplified together, 4 to 32", "20", false},
+    {Setting::kRepair, "repair", "", kInput,
+     "remove invalid, degenerate and duplicate triangles, orient the rest consistently, split non-manifold edges",
+     "false", false},
+    {Setting::kLinearColors, "linear-colors", "", kInput,
+     "read whole-number colours of PLY and STL as linear, not as sRGB", "false", false},
+    {Setting::kKeepTopology, "keep-topology", "", kQuality,
+     "keep the holes, handles and pieces of a manifold in every cut; needs more triangles", "false", false},
+    {Setting::kLockBorders, "lock-borders", "", kQuality,
+     "keep every vertex of open borders in every cut, so that tiles built with one --grid fit together; needs more "
+     "triangles",
      "false", true},
-    {Setting::kAggregate, "aggregate",
-     "what is thinned out by coverage, not by distance: masked cards, which are meshes and parts of many small loose "
-     "pieces with an alpha mask (masked), those without a mask too (auto), all small pieces (always), nothing (never), "
-     "or meshes and materials by name, comma by comma",
+    {Setting::kAggregate, "aggregate", " masked|never|auto|always|NAMES", kQuality,
+     "which meshes are simplified by covered area, as foliage and debris need; masked: meshes and parts of many small "
+     "loose pieces with an alpha mask; auto: those without a mask too; always: all small pieces; or meshes and "
+     "materials by name, comma-separated",
      "masked", true},
-    {Setting::kPromise, "promise",
-     "what errors are of: positions; texels, with texture coordinates; appearance, with normals too", "position",
+    {Setting::kPromise, "promise", "", kQuality,
+     "what the stored errors cover: positions; texels: also texture coordinates; appearance: also normals", "position",
      false},
 }};
 
@@ -289,7 +303,7 @@ std::string find_fault(Setting setting, std::string_view word) {
       return word == "auto" || parse_positive(word) ? "" : wanted("auto or a distance above 0 in mesh units", word);
 
     case Setting::kAggregate:
-      return !word.empty() ? "" : "give masked, never, auto, always, or names of meshes and materials, comma by comma";
+      return !word.empty() ? "" : "give masked, never, auto, always, or names of meshes and materials, comma-separated";
     case Setting::kClusterTriangles:
       return parse_cluster_triangles(word) ? "" : wanted("a whole number of triangles from 1 to 256", word);
     case Setting::kGroupClusters:

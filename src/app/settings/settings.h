@@ -45,9 +45,11 @@ constexpr std::size_t kSettingCount = 19;
 
 struct SettingInfo {
   Setting setting;
-  const char* name;  ///< of the long option, without its dashes
-  const char* help;
-  const char* usual;  ///< the word where nobody says anything
+  const char* name;   ///< of the long option, without its dashes
+  const char* value;  ///< " N": what the help calls its value; empty: by its choices, or a flag
+  const char* group;  ///< of the help
+  const char* help;   ///< meaning, unit, range
+  const char* usual;  ///< the default
   bool is_of_mesh;    ///< each mesh may have its own
 };
 [[nodiscard]] std::span<const SettingInfo, kSettingCount> all_settings();

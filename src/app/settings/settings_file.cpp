@@ -87,7 +87,7 @@ class FileReader {
     if (text.empty()) return Error{ErrorCode::kInvalid, layer_.from, "the file is empty"};
     const Result<Json> root = scene::parse_json(text);
     if (!root) return Error{ErrorCode::kInvalid, layer_.from, root.error().detail};
-    if (!root->is_object()) return Error{ErrorCode::kInvalid, layer_.from, "is no object of settings"};
+    if (!root->is_object()) return Error{ErrorCode::kInvalid, layer_.from, "is not an object of settings"};
     for (const JsonMember& member : *root->object()) {
       TRY(read_member(member));
     }
@@ -109,14 +109,14 @@ class FileReader {
   }
 
   Status read_rules(const Json& meshes) {
-    if (!meshes.is_object()) return wrong("meshes", "is no object of names or globs");
+    if (!meshes.is_object()) return wrong("meshes", "is not an object of names or globs");
     if (meshes.object()->size() > kMaxRules) {
       return wrong("meshes", "has more than " + std::to_string(kMaxRules) + " entries");
     }
     for (const JsonMember& rule : *meshes.object()) {
       const std::string path = "meshes/" + rule.key.substr(0, kMaxGlobBytes);
       if (rule.key.size() > kMaxGlobBytes) return wrong(path, "is longer than 256 bytes");
-      if (!rule.value.is_object()) return wrong(path, "is no object of settings");
+      if (!rule.value.is_object()) return wrong(path, "is not an object of settings");
       SettingLayer::MeshRule& out = layer_.mesh_rules.emplace_back();
       out.glob = rule.key;
       for (const JsonMember& member : *rule.value.object()) {

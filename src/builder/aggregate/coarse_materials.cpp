@@ -50,7 +50,7 @@ Result<CoarseMaterials> derive_materials(const scene::Scene& scene, std::span<co
   out.materials = scene.materials;
   out.of_source.resize(scene.materials.size());
   Json document = Json::parse(scene.document, nullptr, false);
-  if (!document.is_object()) return Error{ErrorCode::kInvalid, "document", "is no JSON object"};
+  if (!document.is_object()) return Error{ErrorCode::kInvalid, "document", "is not a JSON object"};
   Json& list = document["materials"];
   if (!list.is_array()) list = Json::array();
   bool is_any_derived = false;

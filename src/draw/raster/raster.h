@@ -54,12 +54,16 @@ struct VisibilityBuffer {
 /// An empty buffer of this size.
 [[nodiscard]] VisibilityBuffer make_visibility_buffer(std::uint32_t width, std::uint32_t height);
 
+/// Which sides of a triangle are drawn.
+enum class Sides : std::uint8_t { kOfMaterial, kBoth };
+
 /// Draws the given cut; the order of its entries decides between equal depths, so pass it as selection returns it.
 /// `masks`: load_alpha_masks() of the asset; without them masked materials are drawn as opaque.
 /// Errors: kUsage for a camera that is not finite, has no direction, or is out of range (size 1 … 16384, near distance
 /// 1e-100 … 1e100) and for ids that the asset does not have; kInvalid for a broken page.
 [[nodiscard]] Result<VisibilityBuffer> draw_cut(const run::Asset& asset, std::span<const run::ClusterInstance> cut,
-                                                const run::Camera& camera, const AlphaMasks& masks = {});
+                                                const run::Camera& camera, const AlphaMasks& masks = {},
+                                                Sides sides = Sides::kOfMaterial);
 
 /// Colours what draw_cut() found. `textures`: load_textures() of the asset, for kShaded; without, base colours are
 /// factors and vertex colours alone. \pre `visibility` was drawn from the same asset, cut and camera

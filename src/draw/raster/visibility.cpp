@@ -17,7 +17,8 @@ namespace {
 constexpr std::size_t kBatchClusters = 2048;  ///< about 12 MB of screen triangles
 
 void project_cluster(const run::Asset& asset, const AlphaMasks& masks, const Projection& projection,
-                     const CutPages& pages, const run::ClusterInstance& entry, std::uint32_t item, ScreenSoup& out) {
+                     const CutPages& pages, Sides sides, const run::ClusterInstance& entry, std::uint32_t item,
+                     ScreenSoup& out) {
   const format::InstanceRecord& instance = asset.instances()[entry.instance.value];
   if ((instance.flags & format::kInstanceSingular) != 0) return;
   run::DecodedCluster cluster;
@@ -33,7 +34,8 @@ void project_cluster(const run::Asset& asset, const AlphaMasks& masks, const Pro
   const bool is_mirrored = (instance.flags & format::kInstanceMirrored) != 0;
   for (std::uint32_t t = 0; t < cluster.triangle_count; ++t) {
     const auto [a, b, c] = cluster.triangles[t];
-    const bool is_double_sided = asset.materials()[cluster.triangle_material[t]].double_sided != 0;
+    const bool is_double_sided =
+        sides == Sides::kBoth || asset.materials()[cluster.triangle_material[t]].double_sided != 0;
     const Culling culling = is_double_sided ? Culling::kNone
                             : is_mirrored   ? Culling::kCounterClockwise
                                             : Culling::kClockwise;
@@ -79,7 +81,7 @@ VisibilityBuffer make_visibility_buffer(std::uint32_t width, std::uint32_t heigh
 }
 
 Result<VisibilityBuffer> draw_cut(const run::Asset& asset, std::span<const run::ClusterInstance> cut,
-                                  const run::Camera& camera, const AlphaMasks& masks) {
+                                  const run::Camera& camera, const AlphaMasks& masks, Sides sides) {
   TRY_LET(projection, make_projection(camera));
   projection->far_distance = scene_depth(asset, *projection);
   TRY_LET(pages, CutPages::load(asset, cut));
@@ -90,7 +92,7 @@ Result<VisibilityBuffer> draw_cut(const run::Asset& asset, std::span<const run::
     const std::size_t count = std::min(kBatchClusters, cut.size() - first);
     parts.assign(count, {});
     parallel_for_each_index(count, 8, [&](std::size_t i) {
-      project_cluster(asset, masks, *projection, *pages, cut[first + i], static_cast<std::uint32_t>(first + i),
+      project_cluster(asset, masks, *projection, *pages, sides, cut[first + i], static_cast<std::uint32_t>(first + i),
                       parts[i]);
     });
     ScreenSoup soup;

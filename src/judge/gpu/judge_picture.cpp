@@ -203,28 +203,6 @@ bool may_cross_near_around(const run::Asset& asset, const draw::Projection& proj
   return false;
 }
 
-/// The cut with its back faces too: what a ray meets at all.
-Result<draw::VisibilityBuffer> draw_both_sides(const run::Asset& asset, std::span<const run::ClusterInstance> cut,
-                                               const draw::Projection& projection) {
-  TRY_LET(pages, draw::CutPages::load(asset, cut));
-  draw::VisibilityBuffer out = draw::make_visibility_buffer(projection.size.width, projection.size.height);
-  for (std::size_t item = 0; item < cut.size(); ++item) {
-    const format::InstanceRecord& instance = asset.instances()[cut[item].instance.value];
-    const draw::GridToClip to_clip = draw::make_grid_to_clip(projection, asset.meshes()[instance.mesh], instance);
-    run::DecodedCluster cluster;
-    pages->decode(asset, cut[item].cluster, cluster);
-    draw::ScreenSoup soup;
-    for (std::uint32_t t = 0; t < cluster.triangle_count; ++t) {
-      const auto& [i, j, k] = cluster.triangles[t];
-      draw::add_triangle({to_clip.project(cluster.position(i)), to_clip.project(cluster.position(j)),
-                          to_clip.project(cluster.position(k))},
-                         draw::Culling::kNone, {static_cast<std::uint32_t>(item), t}, projection.size, soup);
-    }
-    draw::draw_soup(soup, out);
-  }
-  return out;
-}
-
 /// Every cluster of level 0, in every instance that can be drawn.
 std::vector<run::ClusterInstance> finest_cut(const run::Asset& asset) {
   std::vector<run::ClusterInstance> finest;
@@ -287,7 +265,7 @@ Displacements find_displacements(const run::Asset& asset, const PictureSource& s
   };
   const auto to_source = [&](const PixelPoint& p) {
     const std::uint32_t mesh = asset.instances()[p.instance].mesh;
-    return distance(mesh < source.meshes.size() ? &source.meshes[mesh].tree : nullptr, p.point);
+    return distance(mesh < source.meshes.size() ? &*source.meshes[mesh].tree : nullptr, p.point);
   };
   const auto to_cut = [&](const PixelPoint& p) {
     const auto found = cut_of.find(p.instance);
@@ -328,8 +306,8 @@ Displacements find_painted_displacements(const run::Asset& asset, const PictureS
 /// Pixels of the background that are holes: PictureReport::holes says which.
 Result<std::uint64_t> count_holes(const run::Asset& asset, std::span<const run::ClusterInstance> cut,
                                   const draw::VisibilityBuffer& drawn, const Pictures& pictures,
-                                  const std::vector<Displacement>& back, const draw::Projection& projection,
-                                  double tolerance) {
+                                  const std::vector<Displacement>& back, const run::Camera& camera,
+                                  const draw::Projection& projection, double tolerance) {
   std::uint64_t holes = 0;
   std::optional<draw::VisibilityBuffer> both_sides;  // drawn where it is asked for
   for (std::size_t i = 0; i < drawn.item.size(); ++i) {
@@ -338,7 +316,7 @@ Result<std::uint64_t> count_holes(const run::Asset& asset, std::span<const run::
     if (!is_covered_around(pictures.truth, x, y)) continue;
     if (may_cross_near_around(asset, projection, pictures.truth_points, back, tolerance, x, y)) continue;
     if (!both_sides) {
-      TRY_LET(buffer, draw_both_sides(asset, cut, projection));
+      TRY_LET(buffer, draw::draw_cut(asset, cut, camera, {}, draw::Sides::kBoth));
       both_sides = std::move(*buffer);
     }
     if (both_sides->item[i] != draw::VisibilityBuffer::kNothing) ++holes;
@@ -415,7 +393,7 @@ Result<PictureReport> judge_picture(const run::Asset& asset, const PictureSource
   PictureReport out;
   compare_with_full(drawn, *pictures, out);
   judge_displacements(drawn, *pictures, moves, source.tolerance, out);
-  TRY_LET(holes, count_holes(asset, cut, drawn, *pictures, moves.back, *projection, source.tolerance));
+  TRY_LET(holes, count_holes(asset, cut, drawn, *pictures, moves.back, camera, *projection, source.tolerance));
   out.holes = *holes;
   return out;
 }

@@ -9,7 +9,7 @@
 #include <meshlode/result.h>
 
 #include "draw/raster/raster.h"
-#include "judge/gpu/source_picture.h"
+#include "judge/pictures/source_picture.h"
 #include "run/decode/decode.h"
 #include "run/read/asset.h"
 #include "run/select/select.h"
@@ -46,7 +46,7 @@ constexpr int kHoleRadius = 2;
 
 /// What pictures of an asset are judged by.
 struct PictureSource {
-  std::span<const SourceSurface> meshes;         ///< the source, one a mesh of the asset
+  std::span<const SourceSurface> meshes;         ///< the source, one a mesh of the asset, with trees
   std::span<const run::DecodedCluster> decoded;  ///< decode_all() of the asset
   double tolerance = 1.0;                        ///< of the promise, 1.05 where it is measured
   std::span<const PaintedSurface> painted{};     ///< painted_surfaces()

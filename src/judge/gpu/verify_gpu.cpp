@@ -142,6 +142,7 @@ struct Promise {
   bool has_aggregates = false;    ///< which are judged by what they cover (V208)
   bool has_displacement = false;  ///< how far a pixel may be displaced: there is a source, and a tier that speaks of it
   bool is_closed = false;         ///< every mesh of the source is
+  bool is_estimated = false;      ///< some mesh's errors are
   bool has_holes = false;         ///< that nothing shows through: of what is closed and opaque
   double tolerance = 1.0;
 };
@@ -154,7 +155,10 @@ Promise promise_of(const run::Asset& asset, const std::vector<SourceSurface>& so
     if (mesh.cluster_count == 0) continue;
     // What is promised of more than positions is measured where positions are estimated.
     const bool is_estimated = mesh.error_tier == format::ErrorTier::kQem && out.kind == format::Promise::kPosition;
-    if (is_estimated) out.has_displacement = false;
+    if (is_estimated) {
+      out.is_estimated = true;
+      out.has_displacement = false;
+    }
     if (mesh.error_tier != format::ErrorTier::kCertified && !is_estimated) out.tolerance = 1.05;
   }
   for (std::uint32_t m = 0; m < asset.meshes().size(); ++m) {
@@ -177,9 +181,10 @@ struct Checks {
   GpuCheck by_mesh{Rule::kV409, "hardware raster, mesh shaders"};
   GpuCheck holes{Rule::kV406, "no background is seen through the cut where the source covers it (pixels)"};
   GpuCheck displaced{Rule::kV405, ""};
+  GpuCheck surfaces{Rule::kV211, ""};
 
   [[nodiscard]] std::vector<GpuCheck> in_order() const {
-    return {decoded, cuts, pixels, culled, by_vertex, by_mesh, holes, displaced};
+    return {decoded, cuts, pixels, culled, by_vertex, by_mesh, holes, displaced, surfaces};
   }
 };
 
@@ -208,6 +213,7 @@ class CameraJudge {
         source_(source),
         promise_(promise),
         masks_(masks),
+        ids_(asset, source.meshes, masks),
         checks_(checks),
         report_(report) {}
 
@@ -260,6 +266,7 @@ class CameraJudge {
     if (!drawn) return drawn.error();
     TRY_LET(picture, judge_picture(asset_, source_, *cut, *drawn, named.camera, options_.pixel_error, masks_));
     count(*picture, where);
+    TRY(judge_ids(*cut, *drawn, named, where));
     report_.cameras.push_back({named, without_maps(*picture), {}});
     if (!worst_.camera || picture->largest_share > worst_.picture.largest_share) {
       worst_ = {report_.cameras.size() - 1, *picture};
@@ -268,6 +275,14 @@ class CameraJudge {
     const bool has_failed =
         (promise_.has_displacement && picture->exceeded > 0) || (promise_.has_holes && picture->holes > 0);
     return has_failed ? write_maps(options_, *picture, report_.cameras.back()) : Status(Ok{});
+  }
+
+  Status judge_ids(std::span<const run::ClusterInstance> cut, const draw::VisibilityBuffer& drawn,
+                   const NamedCamera& named, const std::string& where) {
+    TRY_LET(truth, ids_.draw_source_ids(named.camera));
+    TRY_LET(distance, ids_.judge_cut(*truth, named.camera, cut, drawn, options_.pixel_error));
+    report_.surfaces.add(where, *distance);
+    return Ok{};
   }
 
   void count(const PictureReport& picture, const std::string& where) {
@@ -291,6 +306,7 @@ class CameraJudge {
   const PictureSource& source_;
   const Promise& promise_;
   const draw::AlphaMasks& masks_;
+  IdJudge ids_;
   Checks& checks_;
   GpuVerifyReport& report_;
   Worst worst_;
@@ -307,6 +323,13 @@ void describe_promises(const Promise& promise, const GpuVerifyReport& report, do
       (promise.has_displacement ? ""
        : promise.has_aggregates ? " (not judged: aggregates are held to what they cover)"
                                 : " (not judged: tier qem states the quadric's estimate)");
+  checks.surfaces.is_skipped = promise.is_estimated || report.surfaces.pictures == 0;
+  checks.surfaces.items = report.surfaces.pictures;
+  checks.surfaces.failures = checks.surfaces.is_skipped ? 0 : report.surfaces.beyond_limit;
+  checks.surfaces.first = report.surfaces.worst_picture;
+  checks.surfaces.what =
+      report.surfaces.pictures == 0 ? "which surface pixels show (not judged: no source)" : describe(report.surfaces);
+  if (promise.is_estimated) checks.surfaces.what += " (not judged: tier qem states the quadric's estimate)";
   checks.holes.is_skipped = !promise.has_holes;
   if (!promise.has_holes) {
     checks.holes.what += promise.has_aggregates ? " (not judged: aggregates are open)"

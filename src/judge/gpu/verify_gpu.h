@@ -11,9 +11,10 @@
 
 #include "base/output_files.h"
 #include "draw/gpu/vulkan/vulkan.h"
-#include "judge/gpu/cameras.h"
 #include "judge/gpu/judge_picture.h"
 #include "judge/metrics/metrics.h"
+#include "judge/pictures/cameras.h"
+#include "judge/pictures/id_judge.h"
 #include "judge/validate/rules.h"
 #include "run/read/limits.h"
 
@@ -56,6 +57,7 @@ struct GpuVerifyReport {
   draw::DeviceInfo device;
   std::vector<GpuCheck> checks;
   double largest_px = 0.0, largest_share = 0.0;  ///< of all cameras: PictureReport's
+  IdTotals surfaces;                             ///< V211, by the device's pictures
   std::vector<JudgedCamera> cameras;
   std::vector<std::string> warnings;  ///< images that could not be read
   std::string plan;                   ///< which passes draw the asset and why, a line each

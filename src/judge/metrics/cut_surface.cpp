@@ -81,7 +81,7 @@ Result<Surface> surface_of_clusters(const run::Asset& asset, MeshId mesh, std::s
   return surface;
 }
 
-Surface surface_of_source(const scene::SourceMesh& mesh) {
+Surface surface_of_source(const scene::SourceMesh& mesh, std::vector<std::uint32_t>* primitives) {
   Surface surface;
   std::size_t vertices = 0, corners = 0;
   for (const scene::Primitive& primitive : mesh.primitives) {
@@ -98,6 +98,7 @@ Surface surface_of_source(const scene::SourceMesh& mesh) {
       const Vec3d* at = primitive.positions.data();
       if (!has_area(at[corner[0]], at[corner[1]], at[corner[2]])) continue;
       surface.triangles.push_back({base + corner[0], base + corner[1], base + corner[2]});
+      if (primitives != nullptr) primitives->push_back(static_cast<std::uint32_t>(&primitive - mesh.primitives.data()));
     }
   }
   return surface;

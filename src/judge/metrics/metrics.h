@@ -68,7 +68,8 @@ class DeviationFrom {
                                                   std::span<const ClusterId> clusters);
 
 /// The source: the triangles that have area, exactly (docs/reference/format.md, "The source"), all primitives of the
-/// mesh together, as read.
-[[nodiscard]] Surface surface_of_source(const scene::SourceMesh& mesh);
+/// mesh together, as read. `primitives`: of each triangle the primitive that it is of.
+[[nodiscard]] Surface surface_of_source(const scene::SourceMesh& mesh,
+                                        std::vector<std::uint32_t>* primitives = nullptr);
 
 }  // namespace meshlode::judge

@@ -155,7 +155,7 @@ bool check_section(const FileTables& file, const SectionEntry& entry, RuleLog& l
     return std::to_string(entry.bytes) + " bytes at " + std::to_string(entry.offset) + " leave the file";
   });
   log.expect(entry.offset % format::kSectionAlignment == 0, Rule::kL006, where,
-             [&] { return "offset " + std::to_string(entry.offset) + " is no multiple of 16"; });
+             [&] { return "offset " + std::to_string(entry.offset) + " is not a multiple of 16"; });
   const KnownSection* known = find_known(entry.id);
   log.expect(known != nullptr || (entry.flags & format::kSectionRequired) == 0, Rule::kL009, where,
              [] { return std::string("unknown and required"); });

@@ -101,7 +101,7 @@ constexpr std::array kRules{
          "a node's error bounds those below it and is infinite exactly where one is; a leaf's is its group's"),
     // geometry
     RULE(L501, "I2",
-         "a cluster has 1 to 256 triangles and 1 to 256 vertices, three a triangle at most; a group has a cluster"),
+         "a cluster has 1 to 256 triangles and 1 to 256 vertices, at most three per triangle; a group has a cluster"),
     RULE(L502, "I8", "culling spheres contain their vertices, in exact arithmetic"),
     RULE(L503, "I8", "normal cones hold every triangle's normal, in exact arithmetic"),
     RULE(L504, "", "the mesh's bounds are those of level 0"),
@@ -131,9 +131,8 @@ constexpr std::array kRules{
          "against the images of the source, and a set so large that 24 bits leave no finer step is within any"),
     RULE(V114, "I6", "where lock_borders is set, every vertex of the source's open border is in every cut"),
     RULE(V115, "",
-         "the asset tells of as many triangles as the source's file holds by its size (binary STL), and of no fewer "
-         "than "
-         "its faces (text STL, OBJ, PLY), told without the importer"),
+         "the asset accounts for as many triangles as the source's file has by its size (binary STL), and for at least "
+         "as many as it has faces (text STL, OBJ, PLY), counted without the importer"),
     RULE(V201, "I5", "a cut draws each piece of surface exactly once and is never empty"),
     RULE(V202, "I6", "the border of a cut consists of edges of the source's border alone"),
     RULE(V203, "I8", "hierarchy traversal selects what the flat rule selects"),
@@ -152,6 +151,9 @@ constexpr std::array kRules{
          "what UVs and normals count as in promises is the mean size of a texel times the texture's sides, and an "
          "eighth "
          "of the diagonal"),
+    RULE(V211, "I7",
+         "from a camera each pixel of the source's picture and of the cut's shows a mesh and material that the other "
+         "picture has within the allowed pixels and 1.5, but for 1% of them"),
     // verify --gpu
     RULE(V401, "I9", "`--gpu`: the device decodes every cluster to the CPU's integers"),
     RULE(V402, "I8", "`--gpu`: the device's traversal selects what the flat rule selects"),

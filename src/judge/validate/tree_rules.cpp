@@ -58,7 +58,7 @@ class TreeChecker {
     const NodeRecord& node = file_.nodes[mesh_.first_node + k];
     const auto where = [&] { return at(k); };
     const bool sound =
-        log_.expect(is_sound(node), Rule::kL403, where, [] { return std::string("sphere or error is no number"); });
+        log_.expect(is_sound(node), Rule::kL403, where, [] { return std::string("sphere or error is not a number"); });
     if (node.child_count == 0) {
       const std::uint32_t local = node.first - mesh_.first_group;  // wraps to a large number when below
       if (!log_.expect(local < mesh_.group_count, Rule::kL402, where,

@@ -14,6 +14,7 @@
 #include "judge/verify/coverage_rule.h"
 #include "judge/verify/cuts.h"
 #include "judge/verify/deviations.h"
+#include "judge/verify/id_rule.h"
 #include "judge/verify/locked_borders.h"
 #include "judge/verify/promises.h"
 #include "judge/verify/source_parts.h"
@@ -115,9 +116,9 @@ void add_source(const run::Asset& asset, const scene::Scene& source, std::span<c
   check_scene(asset, source, clusters, log);
   if (is_quick) {
     report.add_check("", "the source has as many meshes", 1, failures_of(log, {Rule::kV103}));
-    report.skip("I1", "not checked: quick; triangles are not looked for in the source");
-    report.skip("I3", "not checked: quick; level-0 attributes are not held against the source's");
-    if (locks_any(asset, facts)) report.skip("I6", "not checked: quick; locked borders are not looked for");
+    report.skip("I1", "not checked: quick; the source's triangles are not searched");
+    report.skip("I3", "not checked: quick; level-0 attributes are not compared with the source's");
+    if (locks_any(asset, facts)) report.skip("I6", "not checked: quick; locked borders are not checked");
   } else {
     report.add_check("I1", "every source triangle is in exactly one level-0 cluster", totals.source_triangles,
                      failures_of(log, {Rule::kV101}));
@@ -160,7 +161,7 @@ void add_file_triangles(const run::Asset& asset, const scene::Scene& source, std
   log.expect(
       found->at_least <= told && told <= found->at_most, Rule::kV115, [] { return std::string("meshes"); },
       [&] {
-        return "the asset tells of " + std::to_string(told) + " triangles, " + found->words + " " +
+        return "the asset accounts for " + std::to_string(told) + " triangles, " + found->words + " " +
                std::to_string(found->at_least) +
                (found->at_least == found->at_most                  ? ""
                 : found->at_most == scene::FileTriangles{}.at_most ? " or more"
@@ -181,7 +182,7 @@ void add_crowded_cuts(const run::Asset& asset, std::span<const MeshJudge> judges
     count_crowded_cuts(asset, judge.surface, count, keeps_topology, totals, log);
   }
   report.add_check(keeps_topology ? "I6" : "",
-                   std::string(keeps_topology ? "no cut has more than level 0" : "told, no fault") +
+                   std::string(keeps_topology ? "no cut has more than level 0" : "reported, not a fault") +
                        ": edges of more than two triangles, " + std::to_string(totals.of_source) +
                        " at level 0, at most " + std::to_string(totals.of_cuts) + " in a cut",
                    totals.cuts, failures_of(log, {Rule::kV207}));
@@ -303,6 +304,22 @@ void add_promises(const run::Asset& asset, const scene::Scene& source, const Ver
   }
 }
 
+void add_ids(const run::Asset& asset, const scene::Scene& source, const VerifyOptions& options, Report& report) {
+  if (options.is_quick) return report.skip("I7", "not checked: quick; which surface pixels show is not drawn");
+  RuleLog log;
+  const std::uint32_t cameras = std::min(options.cameras, kIdCameras);
+  const IdTotals totals = check_ids(asset, source, cameras, options.seed, log);
+  if (totals.pictures == 0) {
+    return report.skip("I7", "not checked: no camera draws which surface pixels show, or there is too much to draw");
+  }
+  report.out.surfaces = totals;
+  if (has_estimates(asset)) {
+    return report.skip("I7", describe(totals) + " (not judged: tier qem states the quadric's estimate)");
+  }
+  report.add_check("I7", describe(totals), totals.pictures, failures_of(log, {Rule::kV211}));
+  report.take(log);
+}
+
 }  // namespace
 
 VerifyReport verify_asset(const run::Asset& asset, const scene::Scene& whole, const VerifyOptions& options) {
@@ -324,6 +341,7 @@ VerifyReport verify_asset(const run::Asset& asset, const scene::Scene& whole, co
     add_deviations(asset, source, options, report);
     add_promises(asset, source, options, report);
     add_coverage(asset, options, report);
+    add_ids(asset, source, options, report);
   } else {
     report.add_check("I1", "not reached: " + clusters.error().message(), 0, 1);
     if (report.out.finding_count == 0) {

@@ -10,6 +10,7 @@
 
 #include <meshlode/result.h>
 
+#include "judge/pictures/id_judge.h"
 #include "judge/validate/validate.h"
 #include "judge/verify/deviations.h"
 #include "run/read/asset.h"
@@ -17,12 +18,15 @@
 
 namespace meshlode::judge {
 
+/// Places that V211 looks from, each at the whole and closer: two pictures of three cuts.
+constexpr std::uint32_t kIdCameras = 6;
+
 struct VerifyOptions {
   /// Structure, border proof, what surrounds the geometry, and one measured cut of each mesh, in the middle of its
   /// errors. Triangles are not looked for, no other cut and no camera is looked at, and the counts below are not asked.
   bool is_quick = false;
   std::uint32_t uniform_cuts = 300;  ///< cuts per mesh that cross-check I6
-  std::uint32_t cameras = 100;       ///< cameras that cross-check I5, I6 and I8
+  std::uint32_t cameras = 100;       ///< cameras that cross-check I5, I6 and I8; up to kIdCameras draw for V211
   /// Uniform cuts per mesh that are measured for I7, where the tier promises it; kAllCuts (deviations.h): each.
   std::uint32_t deviation_cuts = 12;
   /// Splits for each triangle of the source and of such a cut, in all, after which what is open is called undecided.
@@ -54,6 +58,7 @@ struct VerifyReport {
   };
   std::optional<CrowdedEdges> crowded_edges;
   std::vector<CutBracket> brackets;  ///< V206
+  std::optional<IdTotals> surfaces;  ///< V211, by the CPU; nothing where no picture was drawn
   /// What is promised besides positions, measured (V209); one for each promise that the asset has.
   struct PromisedCuts {
     std::string promise;         ///< "texels"

@@ -29,7 +29,8 @@ Status set_care(std::string_view item, Care& care) {
   if (known == kCareNames.end()) {
     std::vector<std::string> names;
     for (const CareName& one : kCareNames) names.emplace_back(one.name);
-    return usage("'" + std::string(name.substr(0, 64)) + "' is no care of a build" + nearest_or_all(name, names));
+    return usage("'" + std::string(name.substr(0, 64)) + "' is not something that a build can leave out" +
+                 nearest_or_all(name, names));
   }
   const std::string_view value = equals == std::string_view::npos ? std::string_view{} : item.substr(equals + 1);
   if (value != "on" && value != "off")

@@ -145,7 +145,7 @@ Section write_doctor(const ReportData& data) {
     write_paragraph(html, "Nothing was found in the source that costs accuracy, bytes or time under every setting.");
   } else {
     write_paragraph(html,
-                    "Found in the source, worst first, with estimated shares of the scene: what no setting mends.");
+                    "Found in the source, worst first, with estimated shares of the scene: what no setting fixes.");
     html.open("ol", {{"class", "answers"}}).line();
     for (const app::Diagnosis& fault : data.scene_faults->ranked) write_fault(html, fault);
     html.close().line();
@@ -167,7 +167,7 @@ Section write_charts(const ReportData& data) {
 Section write_knobs(const ReportData& data) {
   Section section{"knobs", "What each setting costs", {}};
   write_paragraph(section.body,
-                  "One setting at a time, all others as in the baseline. ≈ stands where the spreads of a timed figure "
+                  "One setting at a time, all others as in the baseline. ≈ marks where the spreads of a timed figure "
                   "overlap, so that no difference was measured. Of processor time that was measured once a spread is "
                   "assumed; any other time that was measured once is not compared.");
   for (const Table& table : tabulate_knobs(data)) write_table(section.body, table);

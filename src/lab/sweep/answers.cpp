@@ -66,11 +66,11 @@ Result<Wish::Bound> parse_bound(std::string_view part) {
     if (bound.metric == nullptr) return unknown_metric(word);
     const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), bound.value);
     if (error != std::errc{} || end != number.data() + number.size() || !std::isfinite(bound.value)) {
-      return wrong_wish("'" + std::string(number.substr(0, 64)) + "' is no number");
+      return wrong_wish("'" + std::string(number.substr(0, 64)) + "' is not a number");
     }
     return bound;
   }
-  return wrong_wish("give bounds and a goal between commas, as in 'deviation<=1e-4, bytes min'");
+  return wrong_wish("give bounds and a goal, comma-separated, such as 'deviation<=1e-4, bytes min'");
 }
 
 /// "bytes min".
@@ -115,7 +115,7 @@ std::string reason_of(const Answer& answer, std::size_t points, std::size_t kept
     why += answer.not_compared.empty() ? "this one is clearly the best of them"
                                        : "this one is clearly the best of those compared";
   } else {
-    why += "the spread does not tell this one from " + std::to_string(answer.as_good.size()) + " more, ";
+    why += "the spread does not distinguish this one from " + std::to_string(answer.as_good.size()) + " more, ";
     why += answer.as_good.size() == 1 ? "which changes no fewer settings" : "none of which changes fewer settings";
   }
   if (has_assumed) why += "; a spread of 25% either way is assumed of what was measured once";

@@ -40,7 +40,7 @@ Status check_state(const fs::path& state) {
   struct stat info {};
   if (::lstat(state.c_str(), &info) != 0) return Ok{};
   if (S_ISREG(info.st_mode) && info.st_nlink == 1) return Ok{};
-  return Error{ErrorCode::kUsage, state.string(), "is a link or no regular file; remove it to measure anew"};
+  return Error{ErrorCode::kUsage, state.string(), "is a link or not a regular file; remove it to measure again"};
 }
 
 Status make_state(const fs::path& state) {

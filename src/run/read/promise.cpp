@@ -22,7 +22,7 @@ Status Asset::choose(format::Promise promise) {
   if (!has_promise(promise)) {
     const std::string name(format::name_of(promise));
     return Error{ErrorCode::kUnsupported, "promise",
-                 "the asset does not promise " + name + ": build it with --promise " + name};
+                 "the asset stores no errors for " + name + "; build it with --promise " + name};
   }
   meshes_ = stored_meshes_;
   groups_ = stored_groups_;

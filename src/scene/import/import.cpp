@@ -53,9 +53,9 @@ Status check_is_scene(const std::filesystem::path& path, std::span<const std::ui
   std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   if (text.empty()) return Error{ErrorCode::kInvalid, path.string(), "the file is empty"};
   if (text.starts_with("LODE")) {
-    return Error{ErrorCode::kUnsupported, path.string(),
-                 "this is a .lode asset, not a scene; look at it with 'meshlode info', store it anew with "
-                 "'meshlode repack'"};
+    return Error{
+        ErrorCode::kUnsupported, path.string(),
+        "this is a .lode asset, not a scene; look at it with 'meshlode info', change its codec with 'meshlode repack'"};
   }
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
   if (text.find_first_not_of(" \t\r\n\f\v") != std::string_view::npos) return Ok{};

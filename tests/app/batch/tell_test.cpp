@@ -38,12 +38,12 @@ TEST(Junit, HoldsEveryKindOfResultAndNoByteThatXmlForbids) {
   EXPECT_EQ(xml.find('\x01'), std::string::npos);
 }
 
-TEST(Table, SumsWhatWasMadeAndCountsTheRest) {
+TEST(Summary, SumsWhatWasMadeAndCountsTheRest) {
   const std::vector<JobResult> results{result_of("a", JobStatus::kBuilt), result_of("b", JobStatus::kFailed),
                                        result_of("c", JobStatus::kUnchanged)};
-  const std::string table = summary_table(results);
-  EXPECT_NE(table.find("2,469,134"), std::string::npos) << table;
-  EXPECT_NE(table.find("3 files: 1 built, 1 unchanged, 1 failed\n"), std::string::npos) << table;
+  EXPECT_TRUE(
+      summary_text(results).starts_with("3 files: 1 built, 1 unchanged, 1 failed; 2,469,134 triangles, 178 bytes, "))
+      << summary_text(results);
   EXPECT_EQ(summary_line({results[2]}), "nothing to do: 1 file unchanged");
 }
 
@@ -51,7 +51,6 @@ TEST(Tell, WarningsAreInEveryAccount) {
   JobResult r = result_of("a", JobStatus::kBuilt);
   r.warnings.push_back({"nothing-to-draw", "nothing to draw: it has no triangle"});
   const std::string text = "nothing to draw: it has no triangle";
-  EXPECT_NE(summary_table({r}).find("  " + text + "\n"), std::string::npos) << summary_table({r});
   EXPECT_EQ(summary_line({r, result_of("b", JobStatus::kBuilt)}), "2 files: 2 built; 1 with warnings");
   EXPECT_NE(junit_xml({r}).find("warning: " + text), std::string::npos);
   for (const std::string& json : {report_json({r}, 1, 0), manifest_json({r}, {}, "", 0)}) {

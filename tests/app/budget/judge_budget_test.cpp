@@ -52,7 +52,7 @@ std::string judged(const std::string& text) {
 
 bool holds(const std::string& text) {
   const std::string message = judged(text);
-  EXPECT_TRUE(message.empty() || message.starts_with("fails on ")) << message;
+  EXPECT_TRUE(message.empty() || message.starts_with("budget exceeded: ")) << message;
   return !message.empty();
 }
 
@@ -71,33 +71,34 @@ TEST(Budget, AListNeedsAQuantifierAndAnObjectAKey) {
             "any(meshes).levels>1: any(meshes).levels is a list: any(meshes).any(levels), any(meshes).all(levels), "
             "any(meshes).count(levels) or any(meshes).levels[0]");
   EXPECT_EQ(refusal("uv_sets>1").substr(0, 31), "uv_sets>1: uv_sets is a list: a");
-  EXPECT_EQ(refusal("totals>1"), "totals>1: totals is no value: it has the keys clusters, stuck_groups");
-  EXPECT_EQ(refusal("any(totals).clusters>1"), "any(totals).clusters>1: totals is no list");
-  EXPECT_EQ(refusal("totals[0]>1"), "totals[0]>1: totals is no list");
+  EXPECT_EQ(refusal("totals>1"), "totals>1: totals is not a value: it has the keys clusters, stuck_groups");
+  EXPECT_EQ(refusal("any(totals).clusters>1"), "any(totals).clusters>1: totals is not a list");
+  EXPECT_EQ(refusal("totals[0]>1"), "totals[0]>1: totals is not a list");
   EXPECT_EQ(refusal("uv_sets['a']>1"), "uv_sets['a']>1: the elements of uv_sets have no names");
 }
 
 TEST(Budget, AValueIsComparedWithItsOwnKind) {
-  EXPECT_EQ(refusal("label>1"), "label>1: label is no number");
-  EXPECT_EQ(refusal("tier==1"), "tier==1: tier is no number");
-  EXPECT_EQ(refusal("bytes==big"), "bytes==big: bytes is no text");
+  EXPECT_EQ(refusal("label>1"), "label>1: label is not a number");
+  EXPECT_EQ(refusal("tier==1"), "tier==1: tier is not a number");
+  EXPECT_EQ(refusal("bytes==big"), "bytes==big: bytes is not a text");
   EXPECT_EQ(refusal("bytes==true"), "bytes==true: bytes is neither true nor false");
   EXPECT_EQ(refusal("anything==big, anything==1, anything==true, totals==null"), "taken");
 }
 
 TEST(Budget, ConditionsThatHoldAreToldWithPlaceAndValue) {
   EXPECT_EQ(judged("bytes>1000, bytes<1000, bytes!=1000"), "");
-  EXPECT_EQ(judged("bytes>=1000"), "fails on bytes>=1000: bytes is 1000");
-  EXPECT_EQ(judged("totals.clusters>0.01K"), "fails on totals.clusters>0.01K: totals.clusters is 20");
-  EXPECT_EQ(judged("tier==qem,label!=a, is_good==false"), "fails on tier==qem: tier is \"qem\"");
-  EXPECT_EQ(judged("any(meshes).roots>1"), "fails on any(meshes).roots>1: meshes[1].roots (moss) is 2, and 1 more");
+  EXPECT_EQ(judged("bytes>=1000"), "budget exceeded: bytes>=1000: bytes is 1000");
+  EXPECT_EQ(judged("totals.clusters>0.01K"), "budget exceeded: totals.clusters>0.01K: totals.clusters is 20");
+  EXPECT_EQ(judged("tier==qem,label!=a, is_good==false"), "budget exceeded: tier==qem: tier is \"qem\"");
+  EXPECT_EQ(judged("any(meshes).roots>1"),
+            "budget exceeded: any(meshes).roots>1: meshes[1].roots (moss) is 2, and 1 more");
   EXPECT_EQ(judged("meshes[\"moss\"].levels[2].error<1"),
-            "fails on meshes[\"moss\"].levels[2].error<1: meshes[1].levels[2].error (moss) is 0.25");
-  EXPECT_EQ(judged("count(meshes)==3"), "fails on count(meshes)==3: count(meshes) is 3");
+            "budget exceeded: meshes[\"moss\"].levels[2].error<1: meshes[1].levels[2].error (moss) is 0.25");
+  EXPECT_EQ(judged("count(meshes)==3"), "budget exceeded: count(meshes)==3: count(meshes) is 3");
   EXPECT_EQ(judged("any(meshes).count(levels)>2"),
-            "fails on any(meshes).count(levels)>2: count(meshes[1].levels) (moss) is 3");
-  EXPECT_EQ(judged("reasons['no progress']>2"), "fails on reasons['no progress']>2: reasons.no progress is 3");
-  EXPECT_EQ(judged("bytes>1, label==a").find('\n'), std::string("fails on bytes>1: bytes is 1000").size());
+            "budget exceeded: any(meshes).count(levels)>2: count(meshes[1].levels) (moss) is 3");
+  EXPECT_EQ(judged("reasons['no progress']>2"), "budget exceeded: reasons['no progress']>2: reasons.no progress is 3");
+  EXPECT_EQ(judged("bytes>1, label==a").find('\n'), std::string("budget exceeded: bytes>1: bytes is 1000").size());
 }
 
 TEST(Budget, WhatIsNullOrMissingIsLargerThanAnyNumberAndEqualToNullAlone) {
@@ -120,7 +121,7 @@ TEST(Budget, AnAbsentCountOfAMapIsZero) {
   EXPECT_FALSE(holds("reasons['other']==null"));
   EXPECT_TRUE(holds("reasons['no progress']>2"));
   EXPECT_FALSE(holds("kinds.green>0"));
-  EXPECT_EQ(judged("kinds.green<1"), "fails on kinds.green<1: kinds.green is 0");
+  EXPECT_EQ(judged("kinds.green<1"), "budget exceeded: kinds.green<1: kinds.green is 0");
   // Where the schema names the keys a misspelt one is no count of nothing.
   EXPECT_EQ(refusal("kinds.gren>0"), "kinds.gren>0: kinds has no key 'gren'; the nearest is 'green'");
   EXPECT_EQ(refusal("kinds['violet']>0"), "kinds['violet']>0: kinds has no key 'violet'; it has red or green");
@@ -144,14 +145,14 @@ TEST(Budget, AnyIsOfOneAndAllIsOfEachAndOfSome) {
   EXPECT_FALSE(holds("any(uv_sets)>=0"));
   // What an element of all(…) had before another refused is not told: the second mesh is the first that holds.
   EXPECT_EQ(judged("any(meshes).all(levels).error!=0.5"),
-            "fails on any(meshes).all(levels).error!=0.5: meshes[1].levels[0].error (moss) is 0");
+            "budget exceeded: any(meshes).all(levels).error!=0.5: meshes[1].levels[0].error (moss) is 0");
 }
 
 TEST(Budget, ASubscriptThatLeadsNowhereIsAnError) {
   EXPECT_EQ(judged("meshes[3].roots>1"), "meshes[3].roots>1: meshes: there is no [3]");
   EXPECT_EQ(judged("meshes['rok'].roots>1"), "meshes['rok'].roots>1: meshes: there is no 'rok'; the nearest is 'rock'");
   EXPECT_EQ(judged("any(meshes).levels[2].error<1"),
-            "fails on any(meshes).levels[2].error<1: meshes[1].levels[2].error (moss) is 0.25");
+            "budget exceeded: any(meshes).levels[2].error<1: meshes[1].levels[2].error (moss) is 0.25");
   EXPECT_EQ(judged("all(meshes).levels[0].error==0"), "");
   EXPECT_EQ(judged("uv_sets[0]>1"), "uv_sets[0]>1: uv_sets: there is no [0]");
 }
@@ -191,8 +192,9 @@ TEST(Budget, OneErrorTellsAllThatHolds) {
   ASSERT_TRUE(broken.ok());
   const Error error = budget_error(*broken, "a.lode");
   EXPECT_EQ(error.code, ErrorCode::kCheckFailed);
-  EXPECT_EQ(error.message(),
-            "a.lode: fails on bytes>1: bytes is 1000; fails on totals.clusters>1: totals.clusters is 20");
+  EXPECT_EQ(
+      error.message(),
+      "a.lode: budget exceeded: bytes>1: bytes is 1000; budget exceeded: totals.clusters>1: totals.clusters is 20");
 }
 
 }  // namespace

@@ -224,8 +224,8 @@ TEST(Compare, AFigureThatWasNotMeasuredIsCalledSo) {
       {"clusters", std::nullopt, 7.0, Change::Kind::kCount},
   };
   const std::string text = comparison_text(comparison);
-  EXPECT_NE(text.find("0.5     not measured                -         -\n"), std::string::npos) << text;
-  EXPECT_NE(text.find("-                7                -         -\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("0.5  not measured            -       -\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("-             7            -       -\n"), std::string::npos) << text;
 }
 
 run::Asset tree_with_leaves(AggregateChoice choice) {

@@ -6,7 +6,9 @@
 
 #include <gtest/gtest.h>
 
+#include "app/report/fold_reasons.h"
 #include "app/report/info.h"
+#include "app/report/rows.h"
 #include "format/names.h"
 #include "support/sample_asset.h"
 
@@ -52,18 +54,39 @@ std::vector<std::string> lines_with(const std::string& text, const std::string& 
   return found;
 }
 
-TEST(Formats, TextHasABarForFillAndOneForTheError) {
+TEST(Formats, TextHasABarForTheErrorWhereThereIsRoom) {
   const std::string text = info_text(sample(), three_levels(), false);
   const auto rows = lines_with(text, "..");
-  ASSERT_EQ(rows.size(), 3U) << text;
-  EXPECT_EQ(rows[0],
-            "      0         4       2,048       1,100  1.000 ##########       1      0           0 ..........");
-  EXPECT_EQ(rows[1],
-            "      1         2       1,024         550  0.750 ########..       1      0        0.01 ###.......");
-  EXPECT_EQ(rows[2],
-            "      2         1         512         275  0.500 #####.....       1      0         0.1 ##########");
+  ASSERT_EQ(rows.size(), 2U) << text;
+  EXPECT_EQ(rows[0], "    0        4      2,048      1,100 100%      1     0         0 ..........");
+  EXPECT_EQ(rows[1], "    1        2      1,024        550  75%      1     0      0.01 ###.......");
+  EXPECT_EQ(lines_with(text, "    2        1        512        275  50%      1     0       0.1 ##########").size(), 1U);
   const std::string blocks = info_text(sample(), three_levels(), false, BarStyle::kBlocks);
-  EXPECT_EQ(lines_with(blocks, "███████▌").size(), 1U) << blocks;
+  EXPECT_EQ(lines_with(blocks, "███▏").size(), 1U) << blocks;
+}
+
+TEST(Formats, TextHasColumnsForOtherDeviationsInThePlaceOfBars) {
+  AssetInfo info = describe_asset(sample());
+  for (LevelInfo& level : info.meshes[0].levels) level.error_max = 0.25F;
+  const format::MeshRecord& mesh = sample().meshes()[0];
+  const DeviationColumns columns = deviation_columns(mesh, info.meshes[0]);
+  const auto heads = lines_with(info_text(sample(), info, false), "level clusters");
+  ASSERT_FALSE(heads.empty());
+  EXPECT_EQ(heads[0].find("normals") != std::string::npos, columns.normals);
+  EXPECT_EQ(heads[0].find("UVs") != std::string::npos, columns.uvs);
+}
+
+TEST(FoldReasons, SaysOnceWhatIsTheSameForSeveralMeshes) {
+  const std::vector<Reason> reasons{{"mesh 0 'a: b': TANGENT", "none"}, {"scene: 1 light", "carried"},
+                                    {"mesh 1: TANGENT", "none"},        {"mesh 1: NORMAL", "none"},
+                                    {"mesh 2 'c': TANGENT", "other"},   {"scene: 1 light", "carried"}};
+  const std::vector<Reason> folded = fold_reasons(reasons, 9);
+  std::string text;
+  for (const Reason& reason : folded) text += reason.what + "|" + reason.why + "\n";
+  EXPECT_EQ(text,
+            "TANGENT, 2 of 9 meshes|none\nscene: 1 light|carried\nmesh 1: NORMAL|none\nmesh 2 'c': TANGENT|other\n"
+            "scene: 1 light|carried\n");
+  EXPECT_TRUE(fold_reasons({}, 0).empty());
 }
 
 TEST(Formats, TextAndMarkdownNameAlphaModes) {

@@ -54,7 +54,7 @@ unshare --user --map-root-user --mount true 2>/dev/null || skip "no user namespa
 for turn in first second; do
   unshare --user --map-root-user --mount --pid --fork sh -c \
     'mount -t proc proc root/proc 2>/dev/null || mount --rbind /proc root/proc; exec env -i PATH=/bin /usr/sbin/chroot root /bin/sh -e /script' 2>../stderr
-  echo "$turn: exit $?, $(tail -n 1 ../stderr | sed 's/.*  //')"
+  echo "$turn: exit $?, $(tail -n 1 ../stderr | sed 's/; [0-9,]* triangles.*//')"
 done
 grep -c '<testcase' root/job/assets.xml
 "$JSON_CHECK" "$SCHEMAS/manifest.schema.json" <root/job/assets.json

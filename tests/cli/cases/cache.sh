@@ -12,7 +12,7 @@ scene() {
 mkdir in
 scene in/a; scene in/b; scene in/c
 # statuses ARGS…: the last line of the summary
-statuses() { "$MESHLODE" build in -O out --cache cache "$@" 2>&1 | tail -n 1 | sed -E 's/ +[0-9,]+ +[0-9,]+ +[0-9.]+  //'; }
+statuses() { "$MESHLODE" build in -O out --cache cache "$@" 2>&1 | tail -n 1 | sed 's/; [0-9,]* triangles.*//'; }
 run build in -O out --cache cache --dry-run
 files
 statuses
@@ -29,8 +29,8 @@ rm out/a.lode
 run build in -O out --cache cache --dry-run --normal-error 0.2
 statuses --normal-error 0.2
 "$MESHLODE" build --quiet in -O clean --normal-error 0.2 && diff -r out clean && echo "as a clean build"
-echo "by the environment: $(MESHLODE_CACHE=cache "$MESHLODE" build in -O env --normal-error 0.2 2>&1 | tail -n 1 | sed 's/.*  //')"
-echo "not by the environment: $(MESHLODE_CACHE=cache "$MESHLODE" build in -O env --no-cache 2>&1 | tail -n 1 | sed 's/.*  //')"
+echo "by the environment: $(MESHLODE_CACHE=cache "$MESHLODE" build in -O env --normal-error 0.2 2>&1 | tail -n 1 | sed 's/; [0-9,]* triangles.*//')"
+echo "not by the environment: $(MESHLODE_CACHE=cache "$MESHLODE" build in -O env --no-cache 2>&1 | tail -n 1 | sed 's/; [0-9,]* triangles.*//')"
 # A scene that moved is the same scene.
 mkdir elsewhere && cp in/a.* elsewhere
 "$MESHLODE" build elsewhere/a.gltf -o moved.lode --cache cache --normal-error 0.2 2>&1 | grep -c 'from the cache'

@@ -9,15 +9,15 @@ complete_words() {
   # shellcheck disable=SC1091
   bash -c 'source bash.txt; COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); _meshlode; echo "${COMPREPLY[*]}"' _ "$@"
 }
-verbs=$("$MESHLODE" --help | sed -n '/^verbs:/,/^$/s/^  \([a-z]*\) .*/\1/p')
+verbs=$("$MESHLODE" --help | sed -n '/^Commands:/,/^$/s/^  \([a-z][a-z]*\) .*/\1/p')
 [ "$(complete_words meshlode '')" = "$(echo $verbs --help --version)" ] && echo "verbs"
 options=0
 for verb in $verbs; do
   offered=" $(complete_words meshlode "$verb" -) "
   in_zsh=$(sed -n "/^    $verb)\$/,/^      ;;\$/p" zsh.txt)
   in_fish=$(grep -F -e "'__meshlode_verb_is $verb'" fish.txt)
-  # At the beginning of a line of the help, "-o,--output TEXT".
-  for option in $("$MESHLODE" "$verb" --help | sed -n 's/^  \(-[^ ]*\).*/\1/p' | tr , ' '); do
+  # At the beginning of a line of the help, "-o, --output FILE" or "    --report FILE".
+  for option in $("$MESHLODE" "$verb" --help | sed -nE 's/^( {2}|      )(-[^ ]*( --[^ ]*)?).*/\2/p' | tr , ' '); do
     options=$((options + 1))
     [[ $offered == *" $option "* ]] || echo "bash lacks $verb $option"
     grep -qE -e "[')]$option[]=+[]" <<<"$in_zsh" || echo "zsh lacks $verb $option"

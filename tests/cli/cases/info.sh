@@ -16,7 +16,7 @@ run info odd.lode --format csv
 run info odd.lode --format csv --stuck
 # Levels and materials; the rest is numbers that any change of the format moves.
 "$MESHLODE" info odd.lode --format markdown | sed '/^## Bytes/,$d' | grep -E '^(#|\| (leaf|glass|level|0 \|))'
-"$MESHLODE" info odd.lode | sed '/^bytes of/,$d' | grep -E '^(mesh|  level|      0|    [01]  )'
+"$MESHLODE" info odd.lode | sed '/^decoded pages/,$d' | grep -E '^(mesh|level|    0|    [01]  )'
 json info info odd.lode --format json
 # The columns of CSV are the keys of JSON.
 cp "$DATA/crystal.glb" a.glb
@@ -27,11 +27,12 @@ code build --quiet a.glb -o a.lode
 # A level a line.
 levels=$("$MESHLODE" info a.lode --format json | grep -c '"full_clusters"')
 [ "$("$MESHLODE" info a.lode --format csv | wc -l)" -eq $((levels + 1)) ] && echo "a line each"
-# on LOCALE: which signs the bars of a terminal have
+# on LOCALE: which signs the bars of a terminal have. Errors have bars where there are no other deviations.
+code build --quiet a.glb -o b.lode --attributes none
 on() {
-  echo "$1: $(env LC_ALL="$1" script -qec "'$MESHLODE' info a.lode" /dev/null | grep -oE '█|#' | sort -u | tr -d '\n')"
+  echo "$1: $(env LC_ALL="$1" script -qec "'$MESHLODE' info b.lode" /dev/null | grep -oE '█|#' | sort -u | tr -d '\n')"
 }
 if command -v script >/dev/null; then
   on C.UTF-8; on en_GB.utf8; on C; on POSIX
 fi
-echo "pipe: $(LC_ALL=C.UTF-8 "$MESHLODE" info a.lode | grep -oE '█|#' | sort -u | tr -d '\n')"
+echo "pipe: $(LC_ALL=C.UTF-8 "$MESHLODE" info b.lode | grep -oE '█|#' | sort -u | tr -d '\n')"

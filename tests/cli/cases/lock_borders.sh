@@ -17,7 +17,7 @@ tile 0 west.obj
 tile 1 east.obj
 "$MESHLODE" plan west.obj --lock-borders | grep lock-borders
 code build --quiet west.obj east.obj -O out --lock-borders --grid 0.0078125 --fail-if 'totals.stuck_groups>0'
-"$MESHLODE" info out/west.lode | grep -E 'lock_borders|borders:|stuck'
+"$MESHLODE" info out/west.lode | grep -E 'lock_borders|borders:|stuck|deviates'
 json info info out/west.lode --format json --stuck
 run info out/west.lode --quiet --fail-if 'any(meshes).stuck_groups>0'
 code info out/west.lode --quiet --fail-if 'any(meshes).stuck_reasons["border"]>0'

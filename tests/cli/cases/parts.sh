@@ -25,7 +25,7 @@ run plan --quiet tree.obj --aggregate auto | grep -o "mesh 0 .*aggregate: .*"
 code build --quiet tree.obj -o tree.lode --aggregate auto
 code build --quiet tree.obj -o whole.lode
 code verify --quiet tree.lode --source tree.obj
-run info tree.lode | grep -A3 "^mesh "
+run info tree.lode | grep -A4 "^mesh "
 json info info tree.lode
 run extract tree.lode --error 0 -o again.glb
 run extract tree.lode --error 0 --mesh tree -o again.glb

@@ -2,7 +2,7 @@
 # PLY, OBJ and STL as their users write them: what is built, what is said to be left out, and --linear-colors, which the
 # asset remembers.
 # Sizes and times differ from one machine to the next.
-build() { run build "$@" | sed -E 's/, [0-9]+ bytes.*/, B bytes, S/'; }
+build() { run build "$@" | sed -E 's/, [0-9,]+ bytes.*/, B bytes, S/'; }
 ply() {
   printf 'ply\rformat ascii 1.0\relement vertex 4\rproperty float x\rproperty float y\rproperty float z\r'
   printf 'property uchar red\rproperty uchar green\rproperty uchar blue\rproperty float quality\r'

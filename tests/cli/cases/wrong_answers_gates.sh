@@ -12,7 +12,7 @@ run info a.lode --quiet --fail-if 'any(meshes).stuck_reason["locked"]>0'
 run build --quiet a.glb -o b.lode --fail-if 'any(meshes).stuck_reasons["locked"]>0'
 run info a.lode --quiet --fail-if 'file_bytes>1GB, file_bytes<100KB'
 echo "names"
-told() { run "$@" | sed -E 's/, [0-9]+ bytes.*//'; }
+told() { run "$@" | sed -E 's/, [0-9,]+ bytes.*//'; }
 told build a.glb -o b.lode --aggregate elm
 run build a.glb -o c.lode --aggregate elm --strict
 run build --quiet a.glb -o b.lode --aggregate elm

@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "draw/gpu/vulkan/vulkan.h"
-#include "judge/gpu/cameras.h"
+#include "judge/pictures/cameras.h"
 #include "run/read/asset.h"
 #include "run/select/select.h"
 

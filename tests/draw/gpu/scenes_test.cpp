@@ -9,8 +9,8 @@
 
 #include "draw/gpu/pass_plan.h"
 #include "gpu_support.h"
-#include "judge/gpu/cameras.h"
 #include "judge/gpu/compare_frame.h"
+#include "judge/pictures/cameras.h"
 #include "support/sample_asset.h"
 
 namespace meshlode::draw::test {

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // I8 and I9 on small scenes: the GPU decodes, selects and draws what the CPU does, bit for bit.
+#include <algorithm>
 #include <cstring>
 
 #include <gtest/gtest.h>
 
+#include "draw/gpu/gpu_camera.h"
 #include "draw/gpu/gpu_support.h"
 #include "draw/raster/projection.h"
 #include "judge/gpu/compare_frame.h"
+#include "judge/pictures/id_picture.h"
 #include "support/sample_asset.h"
 
 namespace meshlode::judge::test {
@@ -93,6 +96,38 @@ TEST_F(Judge, InstancesGetTheBitsOfTheCpu) {
 TEST_F(Judge, DrawsTheSampleSceneAsTheCpuDoes) {
   const run::Asset asset = open(meshlode::test::sample_asset_bytes());
   expect_equal_frames(*device_, asset, {.width = 0, .height = 0, .frustum = false});
+}
+
+/// What a pixel shows, by its mesh and its material, is the same of either picture: meshes of several materials, many
+/// instances, cuts of many clusters.
+TEST_F(Judge, ShowsTheSurfacesThatTheCpuShows) {
+  const run::Asset asset = open(draw::test::build_file(MESHLODE_DATA "/city.glb"));
+  const auto scene = draw::upload_scene(*device_, asset);
+  ASSERT_TRUE(scene) << scene.error().message();
+  auto renderer = draw::Renderer::make(
+      *device_, *scene, {.width = 160, .height = 120, .frustum = false, .double_sided = scene->has_double_sided});
+  ASSERT_TRUE(renderer) << renderer.error().message();
+  const IdPainter painter(asset);
+  const std::vector<NamedCamera> cameras = adversarial_cameras(asset, 160, 120);
+  for (const std::size_t i : {0, 1, 7, 9}) {
+    const NamedCamera& named = cameras[i];
+    SCOPED_TRACE(named.name);
+    const auto depth = draw::depth_of_scene(asset, named.camera);
+    ASSERT_TRUE(depth && renderer->draw(named.camera, 3.0, *depth) && renderer->redraw_in_order());
+    const auto cut = renderer->read_cut();
+    const auto pixels = renderer->read_pixels();
+    ASSERT_TRUE(cut && pixels);
+    const std::vector<run::ClusterInstance> flat = run::select_flat(asset, named.camera, 3.0);
+    const auto drawn = draw::draw_cut(asset, flat, named.camera);
+    ASSERT_TRUE(drawn);
+    const auto by_gpu = painter.of_cut(*cut, *pixels), by_cpu = painter.of_cut(flat, *drawn);
+    ASSERT_TRUE(by_gpu && by_cpu);
+    EXPECT_EQ(by_gpu->id, by_cpu->id);
+    EXPECT_EQ(by_gpu->depth, by_cpu->depth);
+    EXPECT_EQ(by_gpu->level0, by_cpu->level0);
+    EXPECT_TRUE(std::any_of(by_gpu->id.begin(), by_gpu->id.end(),
+                            [](std::uint64_t id) { return id != IdPicture::kBackground; }));
+  }
 }
 
 TEST_F(Judge, CullingChangesNoPixelOfTheSampleScene) {

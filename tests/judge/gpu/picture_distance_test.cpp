@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "draw/gpu/gpu_support.h"
-#include "judge/gpu/cameras.h"
+#include "judge/pictures/cameras.h"
 #include "judge/validate/edit.h"
 #include "run/select/select.h"
 

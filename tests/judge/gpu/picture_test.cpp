@@ -138,7 +138,7 @@ TEST(Picture, ATriangleThatLevel0LostIsSeenInTheSourcesPicture) {
   }
   surface.triangles.push_back({first, first + 1, first + 2});
   rock.source.clear();
-  rock.source.emplace_back(surface, std::vector<std::uint8_t>(surface.triangles.size(), 1));
+  rock.source.emplace_back(surface).double_sided.assign(surface.triangles.size(), 1);
   const auto report =
       judge_picture(*rock.asset, {rock.source, rock.decoded, 1.0}, rock.cut, rock.picture, rock.camera, 1.0);
   ASSERT_TRUE(report);

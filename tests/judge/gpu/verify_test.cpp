@@ -11,6 +11,8 @@
 #include "judge/gpu/verify_gpu.h"
 #include "judge/painted_ball.h"
 #include "scene/import/import.h"
+#include "support/mask_scene.h"
+#include "support/plate_scene.h"
 
 namespace meshlode::judge::test {
 namespace {
@@ -54,7 +56,7 @@ TEST_F(VerifyGpu, ABuiltAssetHoldsItsPromise) {
   const auto report = verify_on_gpu(*asset, *scene, options);
   ASSERT_TRUE(report) << report.error().message();
   EXPECT_EQ(report->cameras.size(), 2U * (10U + 1U)) << "the adversarial ones are judged by the source";
-  for (const char* id : {"V401", "V402", "V403", "V404", "V405", "V406", "V409"}) {
+  for (const char* id : {"V401", "V402", "V403", "V404", "V405", "V406", "V409", "V211"}) {
     const Failures found = failures_of(*report, id);
     EXPECT_EQ(found.failures, 0U) << id << ": " << found.first;
     EXPECT_FALSE(found.is_skipped) << id;
@@ -96,6 +98,27 @@ TEST_F(VerifyGpu, EachPromiseIsJudgedByWhatItSpeaksOf) {
     EXPECT_EQ(of_turned > own.items / 4, has_normals) << of_turned << " of " << own.items;
     EXPECT_EQ(of_turned > 0, has_normals);
   }
+}
+
+/// The plate of the source is behind the floor of its recess in the asset: at eight pixels nothing is displaced by more
+/// than is allowed, and another surface is seen.
+TEST_F(VerifyGpu, APlateThatSankIsFoundByWhatPixelsShowAlone) {
+  const auto asset =
+      run::Asset::from_vector(meshlode::test::built(meshlode::test::plate_scene({.plate_moved = {0.0, 0.0, -1.25}})));
+  ASSERT_TRUE(asset);
+  GpuVerifyOptions options;
+  options.orbits = 0;
+  options.pixel_error = 8.0;
+  options.sizes = {{320, 240}};
+  const auto report = verify_on_gpu(*asset, meshlode::test::plate_scene(), options);
+  ASSERT_TRUE(report) << report.error().message();
+  for (const char* id : {"V401", "V402", "V403", "V404", "V409"}) {
+    EXPECT_EQ(failures_of(*report, id).failures, 0U) << id;
+  }
+  const Failures found = failures_of(*report, "V211");
+  EXPECT_GT(found.failures, 0U);
+  EXPECT_FALSE(found.first.empty());
+  EXPECT_EQ(found.failures, report->surfaces.beyond_limit);
 }
 
 TEST_F(VerifyGpu, AnotherSourceIsToldFromAnotherDrawing) {

@@ -8,11 +8,13 @@
 
 #include <gtest/gtest.h>
 
+#include "builder/builder.h"
 #include "judge/validate/edit.h"
 #include "judge/validate/judged_sample.h"
 #include "judge/validate/rules.h"
 #include "judge/verify/verify.h"
 #include "run/read/asset.h"
+#include "support/plate_scene.h"
 #include "support/sample_asset.h"
 
 namespace meshlode::judge {
@@ -60,6 +62,45 @@ TEST(Verify, CutsAndCamerasAreCounted) {
       verify_bytes(sample(), test::sample_scene(), {.uniform_cuts = 17, .cameras = 9, .seed = 5});
   EXPECT_TRUE(std::any_of(report.checks.begin(), report.checks.end(),
                           [](const auto& c) { return c.invariant == "I8" && c.items == 9; }));
+}
+
+std::size_t count(const VerifyReport& report, const std::string& id) {
+  return static_cast<std::size_t>(
+      std::count_if(report.findings.begin(), report.findings.end(), [&](const Finding& f) { return f.id == id; }));
+}
+
+/// The plate's asset against the same scene with another plate, looked at from six places.
+VerifyReport verify_plate(const test::PlateSceneOptions& drawn, const test::PlateSceneOptions& source = {}) {
+  builder::PipelineReport built;
+  const auto bytes = builder::build_lode(test::plate_scene(drawn), {}, {}, built);
+  EXPECT_TRUE(bytes) << bytes.error().message();
+  return verify_bytes(*bytes, test::plate_scene(source), {.uniform_cuts = 2, .cameras = 6, .deviation_cuts = 0});
+}
+
+/// V211 by itself: what else differs from the source other rules name.
+TEST(Verify, AnotherSurfaceThanTheSourcesIsFound) {
+  const VerifyReport own = verify_plate({});
+  ASSERT_TRUE(own.surfaces);
+  EXPECT_EQ(own.surfaces->pictures, 36U);
+  EXPECT_GT(own.surfaces->all.pixels, 36U * 5000U);
+  const test::PlateSceneOptions sunk{.plate_moved = {0.0, 0.0, -1.25}}, deleted{.has_plate = false},
+      swapped{.are_materials_swapped = true}, aside{.plate_moved = {0.2, 0.0, 0.0}};
+  for (const test::PlateSceneOptions& mutant : {sunk, deleted, swapped}) {
+    EXPECT_GT(count(verify_plate(mutant), "V211"), count(own, "V211"));
+  }
+  EXPECT_GT(count(verify_plate({}, deleted), "V211"), count(own, "V211")) << "what the source has not";
+  EXPECT_EQ(count(verify_plate(aside), "V211"), count(own, "V211")) << "less than a pixel, where two are allowed";
+}
+
+TEST(Verify, WhatPixelsShowIsDrawnFromAsManyPlacesAsCamerasAreAskedFor) {
+  const auto pictures = [](std::uint32_t cameras) {
+    const VerifyReport report =
+        verify_bytes(sample(), test::sample_scene(), {.uniform_cuts = 1, .cameras = cameras, .deviation_cuts = 0});
+    return report.surfaces ? report.surfaces->pictures : 0;
+  };
+  EXPECT_EQ(pictures(0), 0U);
+  EXPECT_EQ(pictures(1), 6U);
+  EXPECT_EQ(pictures(50), 36U);
 }
 
 struct Break {

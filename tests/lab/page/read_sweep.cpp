@@ -144,7 +144,7 @@ Point read_point(Reader& in, const Json& json) {
     if (setting.value.is_string()) {
       point.settings[setting.key] = *setting.value.string();
     } else {
-      in.refuse("settings", "a setting that is no text");
+      in.refuse("settings", "a setting that is not a text");
     }
   }
   for (const scene::JsonMember& figure : *in.object(json, "figures").object()) {

@@ -103,7 +103,7 @@ Result<Store> Store::open(const fs::path& folder, const StoreOptions& options) {
   if (fs::exists(folder / kTagName, error)) return Store(folder, options);
   // The tag is looked for again: somebody else may have made it, and the first entries with it, in the meantime.
   if (!may_become_store(folder) && !fs::exists(folder / kTagName, error)) {
-    return Error{ErrorCode::kUsage, folder.string(), "holds other files and is no cache; give a folder of its own"};
+    return Error{ErrorCode::kUsage, folder.string(), "holds other files and is not a cache; name a folder of its own"};
   }
   if (options.is_read_only) return Store(folder, options);
   const std::span tag(reinterpret_cast<const std::uint8_t*>(kTagText.data()), kTagText.size());

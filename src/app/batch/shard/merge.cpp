@@ -135,7 +135,7 @@ Status check_assets(const std::vector<JobResult>& results) {
     if (!file) return Error{ErrorCode::kCheckFailed, file.error().where, file.error().detail};
     if (file->bytes().size() != r.facts.bytes || hash128(file->bytes()) != r.asset_hash) {
       return Error{ErrorCode::kCheckFailed, r.job.output.string(),
-                   "is not the asset that the manifest of its shard tells of: build that again"};
+                   "is not the asset that the manifest of its shard lists; build that shard again"};
     }
   }
   return Ok{};

@@ -49,9 +49,9 @@ Result<Shard> parse_shard(std::string_view text) {
   const auto index = parse_number(text.substr(0, slash));
   const auto count = parse_number(slash == std::string_view::npos ? std::string_view() : text.substr(slash + 1));
   if (!index || !count || *index < 1 || *index > *count || *count > kMaxShards) {
-    return Error{ErrorCode::kUsage, "--shard",
-                 "give I/N, such as 3/8: share I, 1 to N, of N, which is at most " + std::to_string(kMaxShards) +
-                     got_text(text)};
+    return Error{
+        ErrorCode::kUsage, "--shard",
+        "expected I/N, such as 3/8: share I of N, 1 to N; N is at most " + std::to_string(kMaxShards) + got_text(text)};
   }
   return Shard{*index, *count};
 }

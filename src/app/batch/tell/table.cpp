@@ -4,48 +4,22 @@
 
 #include "app/batch/tell/tell.h"
 #include "base/append_format.h"
+#include "base/printable.h"
 
 namespace meshlode::app {
 
-namespace {
-
-/// 1,234,567
-std::string grouped(std::uint64_t number) {
-  std::string text = std::to_string(number);
-  for (std::size_t at = text.size(); at > 3; at -= 3) text.insert(at - 3, ",");
-  return text;
-}
-
-/// One line whatever names hold.
-std::string plain(std::string text) {
-  for (char& c : text) {
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) c = '?';
-  }
-  return text;
-}
-
-}  // namespace
-
-std::string summary_table(const std::vector<JobResult>& results) {
-  std::string text;
-  append_format(text, "%-11s %13s %15s %9s  %s\n", "status", "triangles", "bytes", "seconds", "file");
+std::string summary_text(const std::vector<JobResult>& results) {
   std::uint64_t triangles = 0, bytes = 0;
   double seconds = 0.0;
   for (const JobResult& r : results) {
-    const bool has_facts = r.has_asset();
-    append_format(text, "%-11s %13s %15s %9.2f  ", name_of(r.status),
-                  has_facts ? grouped(r.facts.triangles).c_str() : "", has_facts ? grouped(r.facts.bytes).c_str() : "",
-                  r.seconds);
-    text += plain(r.job.input.string()) + (has_facts ? " -> " + plain(r.job.output.string()) : "") + "\n";
-    for (const JobWarning& warning : r.warnings) {
-      append_format(text, "%-11s %13s %15s %9s  %s\n", "  warning", "", "", "", warning.text.c_str());
-    }
-    triangles += has_facts ? r.facts.triangles : 0;
-    bytes += has_facts ? r.facts.bytes : 0;
+    triangles += r.has_asset() ? r.facts.triangles : 0;
+    bytes += r.has_asset() ? r.facts.bytes : 0;
     seconds += r.seconds;
   }
-  append_format(text, "%-11s %13s %15s %9.2f  ", "", grouped(triangles).c_str(), grouped(bytes).c_str(), seconds);
-  return text + summary_line(results) + "\n";
+  std::string text = summary_line(results);
+  append_format(text, "; %s triangles, %s bytes, %.2f s\n", grouped_digits(triangles).c_str(),
+                grouped_digits(bytes).c_str(), seconds);
+  return text;
 }
 
 std::string summary_line(const std::vector<JobResult>& results) {

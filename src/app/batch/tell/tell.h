@@ -25,8 +25,8 @@ namespace meshlode::app {
 /// A test case a file, as build servers show them: a failure with its line, a skipped one as skipped.
 [[nodiscard]] std::string junit_xml(const std::vector<JobResult>& results);
 
-/// A row a file and one for each of its warnings, and the sums.
-[[nodiscard]] std::string summary_table(const std::vector<JobResult>& results);
+/// summary_line(), and the sums of triangles, bytes and seconds.
+[[nodiscard]] std::string summary_text(const std::vector<JobResult>& results);
 /// "3 files: 1 built, 1 unchanged, 1 failed", kinds that occur alone; "nothing to do …" where all are unchanged; how
 /// many have warnings.
 [[nodiscard]] std::string summary_line(const std::vector<JobResult>& results);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "judge/gpu/cameras.h"
+#include "judge/pictures/cameras.h"
 
 #include <algorithm>
 #include <charconv>
