@@ -2,9 +2,9 @@
 # What an installed meshlode offers: the program, its man pages and completion scripts, and for find_package(meshlode)
 #   meshlode::program  the command line, and meshlode_add_assets() to build assets with it (MeshlodeAssets.cmake).
 #   meshlode::runtime  static, MIT: read, unpack, select, decode behind <meshlode/runtime.h>. Needs nothing but the C and
-#                      C++ runtime (and zstd, lz4 where the codecs are built in).
+#                      C++ runtime (with MESHLODE_OLD_CODECS also lz4, zstd and draco).
 #   meshlode::c        shared, MIT: the same behind <meshlode/meshlode.h>, for C. Its C++ runtime is inside; what it needs
-#                      is libc (and zstd, lz4).
+#                      is libc (with MESHLODE_OLD_CODECS also these).
 #   meshlode::build    shared, GPL-3.0-or-later: the builder behind <meshlode/build.h>. Shared, so that its third-party
 #                      libraries are its own affair.
 # Each file belongs to one of three components, which are the packages of MeshlodePackages.cmake: runtime (the C library),
@@ -24,21 +24,14 @@ install(FILES LICENSES/GPL-3.0-or-later.txt LICENSES/MIT.txt DESTINATION ${CMAKE
 install(DIRECTORY docs/schemas/ DESTINATION ${CMAKE_INSTALL_DATADIR}/meshlode/schemas COMPONENT tools
         FILES_MATCHING PATTERN "*.json")
 
-option(MESHLODE_INSTALL_DRACO "The installed runtime libraries read pages stored with draco, and need libdraco" OFF)
 set(meshlode_runtime_objects $<TARGET_OBJECTS:meshlode_base_objects> $<TARGET_OBJECTS:meshlode_format_objects>
                              $<TARGET_OBJECTS:meshlode_run_objects>)
 set(meshlode_runtime_codecs)  # by their names for the linker
-if(MESHLODE_UNPACK_LZ4)
-  list(APPEND meshlode_runtime_codecs lz4)
-endif()
-if(MESHLODE_UNPACK_ZSTD)
-  list(APPEND meshlode_runtime_codecs zstd)
-endif()
-if(MESHLODE_INSTALL_DRACO AND MESHLODE_UNPACK_DRACO)
-  list(APPEND meshlode_runtime_objects $<TARGET_OBJECTS:meshlode_draco_codec>)
-  list(APPEND meshlode_runtime_codecs draco)
+if(MESHLODE_OLD_CODECS)
+  list(APPEND meshlode_runtime_objects $<TARGET_OBJECTS:meshlode_old_readers>)
+  set(meshlode_runtime_codecs lz4 zstd draco)
 else()
-  list(APPEND meshlode_runtime_objects $<TARGET_OBJECTS:meshlode_no_draco_codec>)
+  list(APPEND meshlode_runtime_objects $<TARGET_OBJECTS:meshlode_no_old_readers>)
 endif()
 
 add_library(meshlode_runtime STATIC ${meshlode_runtime_objects})

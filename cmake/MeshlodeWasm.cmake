@@ -31,7 +31,6 @@ endforeach()
 add_custom_command(OUTPUT "${meshlode_wasm}"
   COMMAND ${CMAKE_COMMAND} -S ${PROJECT_SOURCE_DIR} -B "${wasm_build}" -G Ninja -DCMAKE_BUILD_TYPE=Release
           -DCMAKE_TOOLCHAIN_FILE=${PROJECT_SOURCE_DIR}/cmake/wasm32-wasi.cmake -DMESHLODE_RUNTIME_ONLY=ON -DMESHLODE_TESTS=OFF
-          -DMESHLODE_UNPACK_LZ4=OFF -DMESHLODE_UNPACK_ZSTD=OFF -DMESHLODE_UNPACK_DRACO=OFF
           "-DCMAKE_CXX_COMPILER_LAUNCHER=${CMAKE_CXX_COMPILER_LAUNCHER}"
   COMMAND ${CMAKE_COMMAND} --build "${wasm_build}" --target meshlode_wasm
   COMMAND ${CMAKE_COMMAND} -E make_directory "${meshlode_npm}"

@@ -13,7 +13,6 @@ packages=(
   nlohmann-json3-dev libtinygltf-dev libdraco-dev libmeshoptimizer-dev  # import
   libmetis-dev libcgal-dev                   # partition, hierarchy and repair
   libopenmesh-dev                            # another simplifier, to compare; an oracle of topology in tests
-  libzstd-dev liblz4-dev                     # pack, unpack
   libpng-dev libjpeg62-turbo-dev libwebp-dev # image
   libstb-dev libcli11-dev                    # raster, command line
   libvulkan-dev glslc                        # gpu: headers and the shader compiler; the loader is opened at run time
@@ -21,6 +20,7 @@ packages=(
 if [ "${1:-}" = --tests ]; then
   packages+=(libgtest-dev clang-14 libclang-rt-14-dev lld-14 assimp-testmodels
              git clang-format-14 clang-tidy-14             # the form of the sources
+             libzstd-dev liblz4-dev                        # pages as versions before 0.2 stored them
              python3                                       # the independent readers of the format and of glTF
              make                                          # a stranger's project, built by what CMake takes by itself
              zsh fish mandoc man-db                        # readers of completion scripts and of man pages

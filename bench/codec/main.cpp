@@ -173,7 +173,7 @@ int main(int argc, char** argv) {
     std::printf("%s: %.0f source triangles, %.0f stored, %zu pages, file %.3f B/source triangle\n",
                 std::filesystem::path(path).filename().c_str(), totals.source_triangles, totals.stored_triangles,
                 pages.size(), static_cast<double>(asset->bytes().size()) / totals.source_triangles);
-    for (const auto& [codec, name] : format::kCodecNames) {
+    for (const auto& [codec, name] : format::kWrittenCodecNames) {
       if (only.empty() || only == name) measure_codec(*asset, pages, codec, name, repetitions);
     }
     measure_opening(path, 2 * repetitions);

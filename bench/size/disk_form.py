@@ -13,7 +13,7 @@ import sys
 import tempfile
 
 BEVY = ["--attributes", "all", "--normal-error", "0.1", "--uv-error", str(1 / 16384)]
-CODECS = ["none", "lz4", "zstd", "strips", "draco"]
+CODECS = ["none", "strips"]
 # name, file, options; {diagonal} is the diagonal of the model's largest mesh
 RUNS = [
     ("bunny, Bevy's accuracy", "bunny.glb", BEVY + ["--grid", "0.000625"]),

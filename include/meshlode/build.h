@@ -147,6 +147,7 @@ enum class AggregateChoice : std::uint8_t {
             ///< becomes a mesh of the asset, "tree#leaves", after those of the input
   kAlways,  ///< all pieces of at most 512 triangles
   kNamed,   ///< those of BuildOptions::aggregate_names
+  kMasked,  ///< as kAuto, of pieces whose materials all have an alpha mask: masked cards
 };
 
 /// How much time to spend on shorter triangle strips. More effort: smaller topology, same geometry.
@@ -169,7 +170,7 @@ struct BuildOptions {
   double normal_error = 0.1;    ///< largest error of a stored normal, degrees, above 0 to 180
   double uv_error = 0.0;        ///< largest move of a texture coordinate; 0: chosen, invisible
   UvErrorUnit uv_error_unit = UvErrorUnit::kUv;       ///< of uv_error
-  format::Codec codec = format::Codec::kNone;         ///< of the pages on disk
+  format::Codec codec = format::Codec::kStrips;       ///< of the pages on disk: kStrips or kNone
   StripEffort strip_effort = StripEffort::kOfPreset;  ///< search effort for shorter strips
   std::uint32_t cluster_triangles = 128;              ///< maximum triangles per cluster, 1 to 256
   std::uint32_t group_clusters = 20;                  ///< target clusters per group, 4 to 32; groups vary around it
@@ -187,7 +188,7 @@ struct BuildOptions {
   bool lock_borders = false;
   /// Surfaces that lie close above one another stay in order where an error comes near the gap between them.
   bool keep_layers = true;
-  AggregateChoice aggregate = AggregateChoice::kNever;  ///< what is simplified by coverage
+  AggregateChoice aggregate = AggregateChoice::kMasked;  ///< what is simplified by coverage
   /// kNamed: names of meshes, whose pieces of at most 512 triangles are taken, and of materials, whose pieces are.
   /// Comma-separated; '*' stands for any characters, '?' for one.
   std::string aggregate_names;

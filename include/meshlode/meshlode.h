@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /** \file
  * The runtime for C (C99) and everything that can call C: open a .lode asset, choose what a camera needs, load pages,
- * decode clusters. Needs libc alone (and zstd, LZ4 if those codecs are built in).
+ * decode clusters. Needs libc alone (with MESHLODE_OLD_CODECS also zstd, LZ4 and Draco).
  *
  * \code
  *   meshlode_asset *asset;
@@ -363,7 +363,8 @@ MESHLODE_API meshlode_status meshlode_load_page(const meshlode_asset* asset, uin
                                                 meshlode_error* error);
 
 /** The same without a copy: checks the page and returns its bytes in the asset. Errors: as above, and
- * MESHLODE_UNSUPPORTED if the page is stored compressed. */
+ * MESHLODE_UNSUPPORTED if the page is stored compressed, as `meshlode build` does by default: `--codec none`, there or
+ * with `meshlode repack`, stores every page so that it can be viewed. */
 MESHLODE_API meshlode_status meshlode_view_page(const meshlode_asset* asset, uint32_t page, const void** out,
                                                 meshlode_error* error);
 

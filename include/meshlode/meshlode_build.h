@@ -97,7 +97,7 @@ typedef struct meshlode_build_options {
   uint32_t attributes;        /**< what is stored: 0 auto, 1 none, 2 all */
   uint32_t keep;              /**< attributes to store always: bit 0 normals, bit 1 + k UV set k, bit 5 colours */
   uint32_t drop;              /**< attributes to store never, same bits; none of `keep` */
-  uint32_t codec;             /**< of pages on disk: 0 none, 1 LZ4, 2 Zstandard, 3 Draco, 4 strips */
+  uint32_t codec;             /**< of pages on disk: 4 strips, 0 none */
   uint32_t strip_effort;      /**< search effort for shorter strips: 0 as preset, 1 fast, 2 default, 3 best */
   uint32_t cluster_triangles; /**< maximum triangles per cluster, 1 to 256 */
   uint32_t group_clusters;    /**< target clusters per group, 4 to 32 */
@@ -111,7 +111,8 @@ typedef struct meshlode_build_options {
   int keep_topology;          /**< every cut of a manifold is one, with its holes, handles and pieces */
   int lock_borders;           /**< open borders keep every vertex in every cut: tiles with one grid_step meet */
   int keep_layers;            /**< surfaces close above one another stay in order; 0: gaps are not kept */
-  uint32_t aggregate;         /**< simplified by coverage: 0 nothing, 1 auto, 2 all small pieces, 3 aggregate_names */
+  uint32_t aggregate;         /**< simplified by coverage: 4 masked cards, 0 nothing, 1 auto, 2 all small pieces,
+                                   3 aggregate_names */
   const char*
       aggregate_names;       /**< names of meshes and materials, comma-separated, with * and ?; may be NULL unless 3 */
   uint32_t promise;          /**< errors cover: 0 positions, 1 texels too, 2 appearance too */

@@ -27,7 +27,7 @@ struct MeshOptions {
   double uv_error = 0.125;           ///< the largest move of a texture coordinate, in the unit below
   bool uv_error_is_texels = true;    ///< of the material's largest texture; else UV units
   bool uv_error_is_default = true;   ///< no texture counts as smaller than 2,048 texels then
-  AggregateChoice aggregate = AggregateChoice::kNever;
+  AggregateChoice aggregate = AggregateChoice::kMasked;
   std::string aggregate_names;  ///< of AggregateChoice::kNamed: globs of meshes and materials, comma by comma
   bool lock_borders = false;    ///< open borders keep every vertex in every cut (builder/prepare/open_border.h)
 
@@ -39,7 +39,7 @@ constexpr std::uint32_t kUsualGroupClusters = 20, kFewestGroupClusters = 4, kMos
 /// What is said once for all meshes.
 struct SceneOptions {
   Preset preset = Preset::kDefault;
-  format::Codec codec = format::Codec::kNone;
+  format::Codec codec = format::Codec::kStrips;
   StripEffort strip_effort = StripEffort::kOfPreset;
   std::uint32_t partition_seed = 1;  ///< of METIS; benchmarks vary it, to tell a change from luck
   bool repair = false;               ///< the scene was imported with repair: recorded, because it changes the bytes

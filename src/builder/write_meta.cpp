@@ -114,6 +114,15 @@ void put_mesh_settings(Json& settings, const PipelineOptions& options, const std
   }
 }
 
+/// Of a scene without masked materials nothing is said where masked ones are asked for: the choice is none.
+bool may_aggregate(const scene::Scene& scene, const PipelineOptions& options) {
+  const auto is_masked = [](const scene::SceneMaterial& material) {
+    return material.alpha_mode == scene::AlphaMode::kMask;
+  };
+  return options.aggregate != AggregateChoice::kNever &&
+         (options.aggregate != AggregateChoice::kMasked || std::ranges::any_of(scene.materials, is_masked));
+}
+
 Json settings_json(const scene::Scene& scene, const PipelineOptions& options,
                    const std::vector<PlanDecision>& decisions) {
   const std::vector<OwnSettings> own = own_settings(options, decisions, scene.meshes.size());
@@ -137,7 +146,7 @@ Json settings_json(const scene::Scene& scene, const PipelineOptions& options,
   if (options.keep_topology) settings["keep_topology"] = true;
   if (options.lock_borders) settings["lock_borders"] = true;
   if (!options.keep_layers) settings["keep_layers"] = false;
-  if (options.aggregate != AggregateChoice::kNever) settings["aggregate"] = aggregate_word(options);
+  if (may_aggregate(scene, options)) settings["aggregate"] = aggregate_word(options);
   if (!scene.choice.empty()) settings["scene"] = scene.choice;
   settings["cluster_triangles"] = options.max_cluster_triangles;
   settings["cluster_vertices"] = options.max_cluster_vertices;

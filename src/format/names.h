@@ -3,6 +3,8 @@
 #pragma once
 
 #include <array>
+#include <string>
+#include <string_view>
 
 #include <meshlode/format.h>
 
@@ -15,6 +17,11 @@ inline constexpr std::array<EnumName<Codec>, 5> kCodecNames{{{Codec::kNone, "non
                                                              {Codec::kZstd, "zstd"},
                                                              {Codec::kStrips, "strips"},
                                                              {Codec::kDraco, "draco"}}};
+
+/// Those that are written. The others were, by versions before 0.2, and are read where their readers are built in
+/// (MESHLODE_OLD_CODECS).
+inline constexpr std::array<EnumName<Codec>, 2> kWrittenCodecNames{
+    {{Codec::kStrips, "strips"}, {Codec::kNone, "none"}}};
 
 inline constexpr std::array<EnumName<ErrorTier>, 3> kErrorTierNames{
     {{ErrorTier::kQem, "qem"}, {ErrorTier::kMeasured, "measured"}, {ErrorTier::kCertified, "certified"}}};
@@ -40,6 +47,13 @@ inline constexpr std::array<EnumName<StuckReason>, 8> kStuckReasonNames{{{StuckR
 
 constexpr const char* name_of(Codec codec) {
   return name_in(kCodecNames, codec);
+}
+/// Of a codec that was written once: what is wrong with asking for it.
+inline std::string not_written(std::string_view codec) {
+  return "'" + std::string(codec) + "' is not written any more; choose strips or none";
+}
+constexpr bool is_written(Codec codec) {
+  return codec == Codec::kNone || codec == Codec::kStrips;
 }
 constexpr const char* name_of(ErrorTier tier) {
   return name_in(kErrorTierNames, tier);

@@ -3,11 +3,15 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include <meshlode/build.h>
 
+#include "format/names.h"
 #include "lab/samples/samples.h"
+#include "support/old_codecs/old_codecs.h"
 
 namespace meshlode::test {
 
@@ -46,6 +50,15 @@ inline Result<std::vector<std::uint8_t>> build_one(const PrimitiveInput& primiti
   SceneInput scene;
   scene.meshes = {&mesh, 1};
   return build_asset(scene, options);
+}
+
+/// A plain asset by a codec that is not written any more; as it is where `codec` is one that is. Empty where it fails.
+inline std::vector<std::uint8_t> stored_as(std::vector<std::uint8_t> bytes, format::Codec codec) {
+  if (format::is_written(codec)) return bytes;
+  const auto asset = run::Asset::from_bytes(bytes);
+  if (!asset) return {};
+  auto stored = stored_by(*asset, codec, std::string(asset->meta_json()));
+  return stored ? std::move(*stored) : std::vector<std::uint8_t>{};
 }
 
 }  // namespace meshlode::test

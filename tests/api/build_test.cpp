@@ -174,6 +174,7 @@ TEST(ApiBuild, OptionsThatMakeNoSenseAreUsageErrors) {
   expect_usage("attributes", [](BuildOptions& o) { o.attributes = static_cast<AttributeChoice>(3); });
   expect_usage("uv_error_unit", [](BuildOptions& o) { o.uv_error_unit = static_cast<UvErrorUnit>(2); });
   expect_usage("codec", [](BuildOptions& o) { o.codec = static_cast<format::Codec>(5); });
+  expect_usage("codec", [](BuildOptions& o) { o.codec = format::Codec::kZstd; });
 }
 
 TEST(ApiBuild, WhatCannotBeDoneIsSaidBeforeItIsTried) {

@@ -80,7 +80,7 @@ TEST(CBuild, TheSameBytesAsInCpp) {
   options.error_tier = 2;
   options.preset = 2;
   options.attributes = 1;
-  options.codec = 4;
+  options.codec = 0;
   options.strip_effort = 1;
   options.keep_topology = 1;
   options.lock_borders = 1;
@@ -92,7 +92,7 @@ TEST(CBuild, TheSameBytesAsInCpp) {
   same.error_tier = format::ErrorTier::kCertified;
   same.preset = Preset::kBest;
   same.attributes = AttributeChoice::kNone;
-  same.codec = format::Codec::kStrips;
+  same.codec = format::Codec::kNone;
   same.strip_effort = StripEffort::kFast;
   same.keep_topology = true;
   same.lock_borders = true;
@@ -153,6 +153,7 @@ TEST(CBuild, WhatMakesNoSenseIsAnErrorWithItsPlace) {
   expect(MESHLODE_USAGE, "strip_effort", [](CScene&, O& o) { o.strip_effort = 4; });
   expect(MESHLODE_USAGE, "attributes", [](CScene&, O& o) { o.attributes = 3; });
   expect(MESHLODE_USAGE, "codec", [](CScene&, O& o) { o.codec = 5; });
+  expect(MESHLODE_USAGE, "codec", [](CScene&, O& o) { o.codec = 1; });
   const CScene sound(arrays);
   meshlode_error error;
   EXPECT_EQ(meshlode_build_to_file(nullptr, nullptr, "x.lode", &error), MESHLODE_USAGE);

@@ -33,7 +33,6 @@ int main(int argc, char** argv) {
   meshlode::SceneInput scene;
   scene.meshes = {&mesh, 1};
   meshlode::BuildOptions options;
-  options.codec = meshlode::format::Codec::kZstd;
   options.on_progress = [](const meshlode::BuildProgress& p) { std::printf("%3.0f%%\n", 100.0 * p.fraction); };
   if (auto status = meshlode::build_asset_file(scene, argv[1], options); !status) {
     std::fprintf(stderr, "%s\n", status.error().message().c_str());

@@ -41,6 +41,7 @@ TEST(EnumNames, EachValueOfTheFormatHasOneNameAndEachNameOneValue) {
 }
 
 TEST(EnumNames, ChoicesKeepTheOrderOfTheTable) {
+  EXPECT_EQ(all_names(format::kWrittenCodecNames), (std::vector<std::string>{"strips", "none"}));
   EXPECT_EQ(all_names(format::kCodecNames), (std::vector<std::string>{"none", "lz4", "zstd", "strips", "draco"}));
 }
 

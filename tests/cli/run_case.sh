@@ -5,10 +5,11 @@
 #   run ARGS…     the command, its output and errors, and its exit code
 #   code ARGS…    the command and its exit code; where it failed also how many lines it printed on stderr
 #   files         the files in the folder, so that nothing partial is left unseen
+#   "$STORE_BY"   tests/support/old_codecs/store_by.cpp
 #   skip REASON   what cannot be tried here; the exit code is 77
 # UPDATE=1 writes CASE.expected instead.
 set -uo pipefail
-MESHLODE=$(realpath "$1"); JSON_CHECK=$(realpath "$2"); case_file=$(realpath "$3")
+MESHLODE=$(realpath "$1"); JSON_CHECK=$(realpath "$2"); STORE_BY=$(dirname "$JSON_CHECK")/../support/store_by; case_file=$(realpath "$3")
 expected=${case_file%.sh}.expected
 REPOSITORY=$(cd "$(dirname "$0")/../.." && pwd)
 DATA=$REPOSITORY/data

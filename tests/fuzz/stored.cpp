@@ -37,7 +37,7 @@ void read_record(Bytes bytes) {
 
 void read_mesh(Bytes bytes) {
   if (bytes.empty()) return;
-  const format::Codec codec = format::kCodecNames[bytes[0] % format::kCodecNames.size()].value;
+  const format::Codec codec = format::kWrittenCodecNames[bytes[0] % format::kWrittenCodecNames.size()].value;
   auto mesh = builder::read_stored_mesh(bytes.subspan(1), "mesh 0");
   if (!mesh) return;
   const auto first = builder::stored_mesh_bytes(mesh->encoded, mesh->decisions, "mesh 0");

@@ -3,12 +3,12 @@
 // zstd, so that everything around the codec can be tested.
 #include <zstd.h>
 
-#include "builder/pack/compressors.h"
 #include "run/unpack/decompressors.h"
+#include "support/old_codecs/compressors.h"
 
 namespace meshlode {
 
-Result<std::vector<std::uint8_t>> builder::pack_draco(const std::vector<std::uint32_t>& values) {
+Result<std::vector<std::uint8_t>> test::compress_draco(const std::vector<std::uint32_t>& values) {
   if (values.empty()) return std::vector<std::uint8_t>();
   const std::size_t bytes = values.size() * sizeof(values[0]);
   std::vector<std::uint8_t> out(ZSTD_compressBound(bytes));

@@ -265,7 +265,8 @@ std::vector<std::string> random_options(Dice& dice, const RandomScene& scene) {
     options.push_back(value);
   };
   if (dice.chance(0.4)) {
-    add("--codec", format::kCodecNames[dice.below(format::kCodecNames.size())].name);
+    // Drawn from five, as when five were written: a seed keeps its scene and its other options.
+    add("--codec", format::kWrittenCodecNames[dice.below(5) % format::kWrittenCodecNames.size()].name);
   }
   if (dice.chance(0.4)) add("--attributes", dice.chance(0.5) ? "none" : "all");
   const double tier = dice.unit();

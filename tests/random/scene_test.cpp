@@ -65,7 +65,7 @@ TEST(RandomScene, EveryKindOfPieceOptionAndAttributeOccurs) {
     }
   }
   for (const ShapeKind& kind : shape_kinds()) EXPECT_GE(kinds[kind.name], 10U) << kind.name;
-  for (const char* option : {"certified", "qem", "draco", "strips", "lz4", "none", "all", "--grid", "--position-error",
+  for (const char* option : {"certified", "qem", "strips", "none", "all", "--grid", "--position-error",
                              "--normal-error", "--uv-error", "texels", "appearance"}) {
     EXPECT_TRUE(options.contains(option)) << option;
   }

@@ -33,7 +33,7 @@ class Trial : public testing::Test {
     const fs::path program = folder_ / "program.sh";
     std::ofstream(program) << script;
     fs::permissions(program, fs::perms::owner_all);
-    TrialOptions options{.program = program, .folder = folder_, .build_options = {"--codec", "lz4"}};
+    TrialOptions options{.program = program, .folder = folder_, .build_options = {"--codec", "none"}};
     options.cpu_seconds = 1.0;
     options.samples = samples_;
     options.other_jobs_too = true;

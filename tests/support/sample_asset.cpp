@@ -6,6 +6,9 @@
 
 #include "builder/promise/measure_promise.h"
 #include "builder/write/write.h"
+#include "format/names.h"
+#include "run/read/asset.h"
+#include "support/old_codecs/old_codecs.h"
 
 namespace meshlode::test {
 
@@ -118,7 +121,7 @@ void add_promises(builder::WriteInput& input) {
 
 namespace {
 
-builder::WriteInput sample_input(const scene::Scene& scene, format::Codec codec) {
+builder::WriteInput sample_input(const scene::Scene& scene) {
   builder::WriteInput input;
   for (const SampleMesh& sample : {sample_patch(), sample_sphere(), sample_tetrahedron()}) {
     input.meshes.push_back(value_or_abort(builder::encode_mesh(sample.mesh, sample.dag, sample.hierarchy, {})));
@@ -128,21 +131,28 @@ builder::WriteInput sample_input(const scene::Scene& scene, format::Codec codec)
   input.mesh_names.emplace_back("empty");
   input.scene = &scene;
   input.meta_json = R"({"source":{"file":"sample.glb"},"settings":{}})";
-  input.codec = codec;
   return input;
 }
 
 }  // namespace
 
+std::vector<std::uint8_t> write_by(builder::WriteInput input, format::Codec codec) {
+  input.codec = format::is_written(codec) ? codec : format::Codec::kNone;
+  std::vector<std::uint8_t> bytes = value_or_abort(builder::write_asset(std::move(input)));
+  if (format::is_written(codec)) return bytes;
+  const run::Asset asset = value_or_abort(run::Asset::from_bytes(bytes));
+  return value_or_abort(stored_by(asset, codec, std::string(asset.meta_json())));
+}
+
 std::vector<std::uint8_t> sample_asset_bytes(const scene::Scene& scene, format::Codec codec) {
-  return value_or_abort(builder::write_asset(sample_input(scene, codec)));
+  return write_by(sample_input(scene), codec);
 }
 
 std::vector<std::uint8_t> promised_asset_bytes(format::Codec codec) {
   const scene::Scene scene = sample_scene();
-  builder::WriteInput input = sample_input(scene, codec);
+  builder::WriteInput input = sample_input(scene);
   add_promises(input);
-  return value_or_abort(builder::write_asset(std::move(input)));
+  return write_by(std::move(input), codec);
 }
 
 std::vector<std::uint8_t> asset_bytes_of(const SampleMesh& sample, format::Codec codec,
@@ -156,8 +166,7 @@ std::vector<std::uint8_t> asset_bytes_of(const SampleMesh& sample, format::Codec
   input.mesh_names.push_back(sample.mesh.name);
   input.scene = &scene;
   input.meta_json = "{}";
-  input.codec = codec;
-  return value_or_abort(builder::write_asset(std::move(input)));
+  return write_by(std::move(input), codec);
 }
 
 }  // namespace meshlode::test

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// read_test.mjs PACKAGE WRITE_DECODED WRITE_BROKEN MESHLODE DATA: the module, through the package's own index.js, makes of assets what the
+// read_test.mjs PACKAGE WRITE_DECODED WRITE_BROKEN MESHLODE STORE_BY DATA: the module, through the package's own index.js, makes of assets what the
 // native runtime makes of them, byte for byte: decoded integers and floats, cuts, and refusals of broken files.
 import { execFileSync } from 'node:child_process';
 import { createHash } from 'node:crypto';
@@ -8,7 +8,7 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { pathToFileURL } from 'node:url';
 
-const [, , folder, writeDecoded, writeBroken, meshlode, data] = process.argv;
+const [, , folder, writeDecoded, writeBroken, meshlode, storeBy, data] = process.argv;
 const { loadRuntime, MeshlodeError } = await import(pathToFileURL(join(folder, 'index.js')));
 const runtime = await loadRuntime();
 const work = mkdtempSync(join(tmpdir(), 'meshlode-wasm-'));
@@ -166,7 +166,11 @@ try {
   for (const scene of ['crystal', 'rock', 'city', 'foliage']) {
     for (const codec of ['none', 'strips', 'zstd']) {
       const path = join(work, `${scene}.${codec}.lode`);
-      execFileSync(meshlode, ['build', '--quiet', join(data, `${scene}.glb`), '-o', path, '--codec', codec]);
+      if (codec === 'zstd') {
+        execFileSync(storeBy, [codec, join(work, `${scene}.none.lode`), path]);
+      } else {
+        execFileSync(meshlode, ['build', '--quiet', join(data, `${scene}.glb`), '-o', path, '--codec', codec]);
+      }
       if (codec !== 'zstd') {
         compare(path, `${scene} stored as ${codec}`);
       } else if (scene === 'rock') {

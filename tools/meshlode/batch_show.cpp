@@ -58,6 +58,7 @@ void print_line(const app::JobResult& r) {
   std::fprintf(stderr, "%s -> %s: %s in %s, %s bytes, %s%.2f s\n", input.c_str(), output.c_str(),
                app::counted(r.facts.triangles, "triangles").c_str(), app::counted(r.facts.meshes, "meshes").c_str(),
                grouped_digits(r.facts.bytes).c_str(), made.c_str(), r.seconds);
+  if (!r.decided.empty()) std::fprintf(stderr, "  decided: %s\n", plain(r.decided).c_str());
 }
 
 void print_left_out(const app::JobFacts& facts) {

@@ -12,13 +12,11 @@
 #include <OpenMesh/Core/System/config.h>
 #include <draco/core/draco_version.h>
 #include <jpeglib.h>
-#include <lz4.h>
 #include <meshoptimizer.h>
 #include <metis.h>
 #include <png.h>
 #include <webp/decode.h>
 #include <xxhash.h>
-#include <zstd.h>
 #include <boost/version.hpp>
 #include <nlohmann/json_fwd.hpp>
 
@@ -73,14 +71,13 @@ std::vector<LibraryVersion> library_versions() {
       {"Boost", boost_version(), "exact integers"},
       {"CGAL", MESHLODE_TEXT(CGAL_VERSION), "enclosing balls, repair, dented polygons"},
       {"CLI11", cli11_version(), "the command line"},
-      {"Draco", draco::kDracoVersion, "pages, meshes of glTF"},
+      {"Draco", draco::kDracoVersion, "meshes of glTF"},
       {"GLM",
        dotted(GLM_VERSION_MAJOR, GLM_VERSION_MINOR, GLM_VERSION_PATCH) + "." + std::to_string(GLM_VERSION_REVISION),
        "vectors"},
       {"libjpeg", jpeg_version(), "textures"},
       {"libpng", png_get_libpng_ver(nullptr), "textures, pictures"},
       {"libwebp", webp_version(), "textures"},
-      {"LZ4", LZ4_versionString(), "pages"},
       {"meshoptimizer", dotted(MESHOPTIMIZER_VERSION / 1000, MESHOPTIMIZER_VERSION / 10 % 100), "meshes of glTF"},
       {"METIS", dotted(METIS_VER_MAJOR, METIS_VER_MINOR, METIS_VER_SUBMINOR), "the partition"},
       {"nlohmann-json", dotted(NLOHMANN_JSON_VERSION_MAJOR, NLOHMANN_JSON_VERSION_MINOR, NLOHMANN_JSON_VERSION_PATCH),
@@ -91,7 +88,6 @@ std::vector<LibraryVersion> library_versions() {
       {"stb_image_write", MESHLODE_STB_IMAGE_WRITE_VERSION, "pictures"},
       {"tinygltf", MESHLODE_TINYGLTF_VERSION, "glTF"},
       {"xxHash", dotted(XXH_VERSION_MAJOR, XXH_VERSION_MINOR, XXH_VERSION_RELEASE), "hashes"},
-      {"zstd", ZSTD_versionString(), "pages"},
   };
 }
 

@@ -14,6 +14,7 @@
 
 #include "base/nearest_name.h"
 #include "base/printable.h"
+#include "format/names.h"
 #include "help_text.h"
 #include "terminal.h"
 
@@ -54,6 +55,8 @@ std::string value_fault(const std::string& word) {
 std::string choice_fault(const std::string& word, const std::vector<std::string>& choices) {
   if (std::find(choices.begin(), choices.end(), word) != choices.end()) return "";
   if (word.empty()) return "needs a value: " + list_of_choices(choices);
+  const bool is_of_codecs = choices == all_names(format::kWrittenCodecNames);
+  if (is_of_codecs && value_in(format::kCodecNames, word)) return format::not_written(word);
   return unknown_choice(printable(word, 64), choices);
 }
 

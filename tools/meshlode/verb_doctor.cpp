@@ -14,6 +14,7 @@
 #include "app/doctor/diagnosis.h"
 #include "base/file.h"
 #include "base/try.h"
+#include "doctor_advice.h"
 #include "doctor_words.h"
 #include "options.h"
 #include "run/read/asset.h"
@@ -45,6 +46,7 @@ Result<app::DoctorReport> examine_asset(const std::string& path, std::uint64_t m
   report.meshes = asset->meshes().size();
   for (const format::MeshRecord& mesh : asset->meshes()) report.triangles += mesh.source_triangles;
   report.diagnoses = app::diagnose_asset(*asset);
+  add_advice(*asset, report.diagnoses);
   app::rank(report.diagnoses);
   return report;
 }
@@ -53,7 +55,10 @@ Result<app::DoctorReport> examine(const std::string& path, const scene::ImportOp
   TRY_LET(asset, is_asset(path));
   if (*asset) return examine_asset(path, options.max_decoded, sound);
   TRY_LET(scene, scene::import_scene(path, options));
-  return report_on_scene(*scene);
+  app::DoctorReport report = report_on_scene(*scene);
+  add_advice(*scene, report.diagnoses);
+  app::rank(report.diagnoses);
+  return report;
 }
 
 std::vector<std::string> all_fault_ids() {
@@ -61,6 +66,7 @@ std::vector<std::string> all_fault_ids() {
   for (std::string& id : app::asset_fault_ids()) {
     if (std::find(ids.begin(), ids.end(), id) == ids.end()) ids.push_back(std::move(id));
   }
+  for (std::string& id : advice_ids()) ids.push_back(std::move(id));
   return ids;
 }
 

@@ -61,7 +61,8 @@ int run_repack(const Verb& verb, std::span<char* const> args) {
   parser.add_positional("FILE", o.input, "a .lode asset");
   parser.group("Output");
   parser.add_value("-o,--output FILE", o.output, "asset to write (required)");
-  parser.add_value("--codec", o.codec, "compression of pages on disk (required)", all_names(format::kCodecNames));
+  parser.add_value("--codec", o.codec, "compression of pages on disk (required)",
+                   all_names(format::kWrittenCodecNames));
   add_output_options(parser, o.out);
   parser.group("Resources");
   add_jobs_option(parser, o.jobs);
@@ -70,7 +71,7 @@ int run_repack(const Verb& verb, std::span<char* const> args) {
   if (!o.output) return print_error({ErrorCode::kUsage, "-o", "name the asset to write"});
   if (!o.codec) return print_error({ErrorCode::kUsage, "--codec", "name the codec"});
   if (const Status name = check_output_name("-o", *o.output, ".lode"); !name) return print_error(name.error());
-  const std::optional<format::Codec> codec = value_in(format::kCodecNames, *o.codec);
+  const std::optional<format::Codec> codec = value_in(format::kWrittenCodecNames, *o.codec);
   const Result<std::uint64_t> max_decoded = parse_max_decoded(o.max_decoded);
   if (!max_decoded) return print_error(max_decoded.error());
 

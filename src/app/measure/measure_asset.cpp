@@ -106,13 +106,14 @@ Status measure_mesh(const run::Asset& asset, MeshId id, const scene::SourceMesh&
   return Ok{};
 }
 
-/// How its pages are stored: as it says, or else as they are.
+/// How its pages are stored: as it says, or else as they are. Strips in the place of what is not written any more.
 format::Codec codec_of(const run::Asset& asset, const MetaInfo& meta) {
-  if (const auto named = value_in(format::kCodecNames, meta.codec)) return *named;
-  for (const format::PageRecord& page : asset.pages()) {
-    if (page.codec != format::Codec::kNone) return page.codec;
+  auto codec = value_in(format::kCodecNames, meta.codec);
+  for (std::size_t p = 0; !codec && p < asset.pages().size(); ++p) {
+    if (asset.pages()[p].codec != format::Codec::kNone) codec = asset.pages()[p].codec;
   }
-  return format::Codec::kNone;
+  if (!codec) return format::Codec::kNone;
+  return format::is_written(*codec) ? *codec : format::Codec::kStrips;
 }
 
 }  // namespace
@@ -140,9 +141,9 @@ Result<std::vector<std::uint8_t>> measure_asset(const run::Asset& asset, const s
     return Error{measured.error().code, "mesh " + std::to_string(m) + (place.empty() ? "" : ", " + place),
                  measured.error().detail};
   }
-  return rewrite_asset(asset,
-                       {codec_of(asset, read_meta(asset.meta_json())), builder::meta_with_tier(asset.meta_json(), tier),
-                        [&](const format::SectionEntry& section) { return tables.bytes_of(section); }});
+  const format::Codec codec = codec_of(asset, read_meta(asset.meta_json()));
+  return rewrite_asset(asset, {codec, builder::meta_with_codec(builder::meta_with_tier(asset.meta_json(), tier), codec),
+                               [&](const format::SectionEntry& section) { return tables.bytes_of(section); }});
 }
 
 }  // namespace meshlode::app

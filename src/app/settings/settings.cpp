@@ -46,7 +46,7 @@ constexpr std::array<SettingInfo, kSettingCount> kSettings{{
      "largest error of a stored normal in degrees, above 0 and up to 180", "0.1", true},
     {Setting::kUvError, "uv-error", " auto|E|Npx", kPrecision,
      "largest error of a texture coordinate, above 0, in UV units or, as in 0.25px, in texels", "auto", true},
-    {Setting::kCodec, "codec", "", "Output", "compression of pages on disk", "none", false},
+    {Setting::kCodec, "codec", "", "Output", "compression of pages on disk", "strips", false},
     {Setting::kStripEffort, "strip-effort", "", kAdvanced, "time spent on shorter triangle strips; auto: the preset's",
      "auto", false},
     {Setting::kClusterTriangles, "cluster-triangles", " N", kAdvanced, "maximum triangles per cluster, 1 to 256", "128",
@@ -64,10 +64,11 @@ constexpr std::array<SettingInfo, kSettingCount> kSettings{{
      "keep every vertex of open borders in every cut, so that tiles built with one --grid fit together; needs more "
      "triangles",
      "false", true},
-    {Setting::kAggregate, "aggregate", " never|auto|always|NAMES", kQuality,
-     "which meshes are simplified by covered area, as foliage and debris need; auto: meshes and parts of many small "
-     "loose pieces; always: all small pieces; or meshes and materials by name, comma-separated",
-     "never", true},
+    {Setting::kAggregate, "aggregate", " masked|never|auto|always|NAMES", kQuality,
+     "which meshes are simplified by covered area, as foliage and debris need; masked: meshes and parts of many small "
+     "loose pieces with an alpha mask; auto: those without a mask too; always: all small pieces; or meshes and "
+     "materials by name, comma-separated",
+     "masked", true},
     {Setting::kPromise, "promise", "", kQuality,
      "what the stored errors cover: positions; texels: also texture coordinates; appearance: also normals", "position",
      false},
@@ -222,7 +223,7 @@ builder::PipelineOptions options_of(const std::array<SettledWord, kSettingCount>
   options.preset = value_in(builder::kPresetNames, word(Setting::kPreset)).value_or(options.preset);
   options.error_tier = value_in(format::kErrorTierNames, word(Setting::kErrorTier))
                            .value_or(builder::settings_of(options.preset).error_tier);
-  options.codec = value_in(format::kCodecNames, word(Setting::kCodec)).value_or(options.codec);
+  options.codec = value_in(format::kWrittenCodecNames, word(Setting::kCodec)).value_or(options.codec);
   options.strip_effort =
       value_in(builder::kStripEffortNames, word(Setting::kStripEffort)).value_or(options.strip_effort);
   options.attributes =
@@ -276,7 +277,7 @@ std::vector<std::string> choices_of(Setting setting) {
     }
     case Setting::kPreset: return all_names(builder::kPresetNames);
     case Setting::kAttributes: return all_names(builder::kAttributeChoiceNames);
-    case Setting::kCodec: return all_names(format::kCodecNames);
+    case Setting::kCodec: return all_names(format::kWrittenCodecNames);
     case Setting::kStripEffort: return all_names(builder::kStripEffortNames);
     case Setting::kRepair:
     case Setting::kLinearColors:
@@ -292,7 +293,8 @@ std::string find_fault(Setting setting, std::string_view word) {
   const std::vector<std::string> choices = choices_of(setting);
   if (!choices.empty()) {
     if (std::find(choices.begin(), choices.end(), word) != choices.end()) return {};
-    return unknown_choice(word, choices);
+    const bool was_written = setting == Setting::kCodec && value_in(format::kCodecNames, word);
+    return was_written ? format::not_written(word) : unknown_choice(word, choices);
   }
   switch (setting) {
     case Setting::kKeep:
@@ -306,7 +308,7 @@ std::string find_fault(Setting setting, std::string_view word) {
       return word == "auto" || parse_positive(word) ? "" : wanted("auto or a distance above 0 in mesh units", word);
 
     case Setting::kAggregate:
-      return !word.empty() ? "" : "give never, auto, always, or names of meshes and materials, comma-separated";
+      return !word.empty() ? "" : "give masked, never, auto, always, or names of meshes and materials, comma-separated";
     case Setting::kClusterTriangles:
       return parse_cluster_triangles(word) ? "" : wanted("a whole number of triangles from 1 to 256", word);
     case Setting::kGroupClusters:

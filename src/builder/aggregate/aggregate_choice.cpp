@@ -66,8 +66,20 @@ Look look_at(std::span<const Piece> pieces) {
   return all;
 }
 
+/// By material of the mesh: may its pieces be thinned out? With kMasked those that are masked.
+std::vector<std::uint8_t> find_eligible(const AggregateQuestion& question, std::uint32_t materials) {
+  std::vector<std::uint8_t> is_eligible(materials, 1);
+  for (std::uint32_t m = 0; question.choice == AggregateChoice::kMasked && m < materials; ++m) {
+    const bool is_masked = m < question.materials.size() && question.materials[m].alpha_mode == scene::AlphaMode::kMask;
+    is_eligible[m] = is_masked ? 1 : 0;
+  }
+  return is_eligible;
+}
+
 /// Parts that are aggregates by themselves where the whole is none: most_triangles by material.
-std::vector<std::uint32_t> find_parts(const scene::SourceMesh& mesh, const Pieces& all, std::uint32_t materials) {
+std::vector<std::uint32_t> find_parts(const scene::SourceMesh& mesh, const Pieces& all,
+                                      const std::vector<std::uint8_t>& is_eligible) {
+  const auto materials = static_cast<std::uint32_t>(is_eligible.size());
   // A part has all materials that some piece has together.
   DisjointSets parts(materials);
   std::size_t next = 0;
@@ -80,9 +92,13 @@ std::vector<std::uint32_t> find_parts(const scene::SourceMesh& mesh, const Piece
     whole[part].add(piece);
     if (piece.triangles <= kSmallPiece) small[part].add(piece);
   }
+  std::vector<std::uint8_t> is_out(materials, 0);
+  for (std::uint32_t m = 0; m < materials; ++m) {
+    if (is_eligible[m] == 0) is_out[parts.find(m)] = 1;
+  }
   std::vector<std::uint32_t> most(materials, 0);
   for (std::uint32_t m = 0; m < materials; ++m) {
-    if (parts.find(m) != m || whole[m].count == 0) continue;
+    if (parts.find(m) != m || whole[m].count == 0 || is_out[m] != 0) continue;
     if (whole[m].fault().empty()) {
       most[m] = kLargestPiece;
     } else if (2 * small[m].triangles >= whole[m].triangles && small[m].fault().empty()) {
@@ -170,18 +186,27 @@ AggregateDecision decide_by_pieces(const scene::SourceMesh& mesh, const Aggregat
     }
     if (!is_asked) return {};
   }
+  const std::vector<std::uint8_t> is_eligible = find_eligible(question, materials);
+  bool is_any = false, is_every = true;
+  for (const scene::Primitive& primitive : mesh.primitives) {
+    const bool is_of_these = is_eligible[primitive.material.value] != 0;
+    is_any = is_any || is_of_these;
+    is_every = is_every && is_of_these;
+  }
+  if (!is_any && question.choice == AggregateChoice::kMasked) return {};
   if (question.keep_topology) return {false, "its topology is kept, and so is each piece", {}};
   if (question.lock_borders) return {false, "its borders are locked, and so is each piece", {}};
   const Pieces all(mesh);
   if (all.pieces.empty()) return {false, "it has no triangles", {}};
   Look whole = look_at(all.pieces);
   const std::string what = describe(whole.count, whole.largest) + ": ";
-  if (question.choice != AggregateChoice::kAuto) {
+  if (question.choice != AggregateChoice::kAuto && question.choice != AggregateChoice::kMasked) {
     return decide_by(mesh, all, std::move(most), question.materials, what + "too many for one of many cards");
   }
   const std::string fault = whole.fault();
-  if (fault.empty()) return {true, describe(whole.count, whole.largest), {}};
-  return decide_by(mesh, all, find_parts(mesh, all, materials), question.materials, what + fault);
+  if (fault.empty() && is_every) return {true, describe(whole.count, whole.largest), {}};
+  return decide_by(mesh, all, find_parts(mesh, all, is_eligible), question.materials,
+                   what + (fault.empty() ? "those with a mask are no aggregate of their own" : fault));
 }
 
 }  // namespace

@@ -16,8 +16,10 @@
 namespace meshlode::builder {
 
 /// What a setting may say but for names.
-inline constexpr std::array<EnumName<AggregateChoice>, 3> kAggregateChoiceNames{
-    {{AggregateChoice::kNever, "never"}, {AggregateChoice::kAuto, "auto"}, {AggregateChoice::kAlways, "always"}}};
+inline constexpr std::array<EnumName<AggregateChoice>, 4> kAggregateChoiceNames{{{AggregateChoice::kMasked, "masked"},
+                                                                                 {AggregateChoice::kNever, "never"},
+                                                                                 {AggregateChoice::kAuto, "auto"},
+                                                                                 {AggregateChoice::kAlways, "always"}}};
 
 /// The setting's word: "auto", or the names.
 template <class Options>
@@ -44,11 +46,12 @@ struct AggregateDecision {
 
 /// kAuto: at least 256 pieces, nearly all triangles in pieces of at most 32, and pieces small beside the mesh. Where
 /// that does not hold for the mesh it may for a part of it: all pieces of a material (of several where a piece has
-/// several), or those of at most 32 triangles, if they are at least half of these. kAlways: all pieces of at most 512
-/// triangles: a larger one is never one of many cards. kNamed: the same where the mesh has one of the names, else its
-/// pieces of the materials that have. Where topology is kept or borders are locked each piece stays, and one with a
-/// mask in a mesh whose texture coordinates are so large that no float of them, and nothing that is stored, is a texel
-/// any more. O(n log n).
+/// several), or those of at most 32 triangles, if they are at least half of these. kMasked: the same of the materials
+/// with an alpha mask, where no piece has another one too; nothing is said of a mesh without such a material. kAlways:
+/// all pieces of at most 512 triangles: a larger one is never one of many cards. kNamed: the same where the mesh has
+/// one of the names, else its pieces of the materials that have. Where topology is kept or borders are locked each
+/// piece stays, and one with a mask in a mesh whose texture coordinates are so large that no float of them, and nothing
+/// that is stored, is a texel any more. O(n log n).
 [[nodiscard]] AggregateDecision decide_aggregate(const scene::SourceMesh& mesh, const AggregateQuestion& question);
 
 /// Pieces of these materials (`is_out`, by the scene's id) stay as they are: what is left of a decision, or the reason

@@ -19,6 +19,7 @@
 #include "builder/api/scene_input.h"
 #include "builder/builder.h"
 #include "builder/preset.h"
+#include "format/names.h"
 #include "scene/import/import.h"
 #include "scene/repair/repair.h"
 
@@ -39,7 +40,7 @@ Status check_choices(const BuildOptions& options) {
   if (options.attributes > AttributeChoice::kAll) return usage("BuildOptions::attributes");
   if (options.uv_error_unit > UvErrorUnit::kTexels) return usage("BuildOptions::uv_error_unit");
   if (options.promise > format::Promise::kAppearance) return usage("BuildOptions::promise");
-  if (options.codec > format::Codec::kStrips) return usage("BuildOptions::codec");
+  if (!format::is_written(options.codec)) return usage("BuildOptions::codec");
   return Ok{};
 }
 

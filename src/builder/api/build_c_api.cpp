@@ -128,7 +128,7 @@ Result<BuildOptions> read_options(const meshlode_build_options& in) {
   if (in.preset > 2) return limit("preset");
   if (in.strip_effort > 3) return limit("strip_effort");
   if (in.attributes > 2) return limit("attributes");
-  if (in.aggregate > 3) return limit("aggregate");
+  if (in.aggregate > 4) return limit("aggregate");
   if (in.promise > 2) return limit("promise");
   BuildOptions out;
   if (in.error_tier != MESHLODE_TIER_OF_PRESET) out.error_tier = static_cast<format::ErrorTier>(in.error_tier);

@@ -5,7 +5,6 @@
 #include <optional>
 
 #include "base/try.h"
-#include "builder/pack/compressors.h"
 #include "builder/pack/pack_section.h"
 #include "builder/pack/page_model.h"
 #include "builder/pack/prefix_streams.h"
@@ -21,36 +20,16 @@ void append(Bytes& out, const Bytes& bytes) {
   out.insert(out.end(), bytes.begin(), bytes.end());
 }
 
-Bytes start_stored(format::PageMethod method, const Bytes& side, std::size_t side_bytes, std::size_t twin_count) {
-  Bytes out;
-  put_u32(out, static_cast<std::uint32_t>(method));
-  put_u32(out, static_cast<std::uint32_t>(side.size()));
-  put_u32(out, static_cast<std::uint32_t>(side_bytes));
-  put_u32(out, static_cast<std::uint32_t>(twin_count));
-  append(out, side);
-  return out;
-}
-
 Bytes store_strips(const Bytes& side, std::size_t side_bytes, const PageModel& model,
                    const std::vector<Bytes>& streams) {
-  Bytes out = start_stored(format::PageMethod::kStrips, side, side_bytes, model.streams[format::kTwinStream].size());
+  Bytes out;
+  put_u32(out, static_cast<std::uint32_t>(format::PageMethod::kStrips));
+  put_u32(out, static_cast<std::uint32_t>(side.size()));
+  put_u32(out, static_cast<std::uint32_t>(side_bytes));
+  put_u32(out, static_cast<std::uint32_t>(model.streams[format::kTwinStream].size()));
+  append(out, side);
   for (const Bytes& stream : streams) put_u32(out, static_cast<std::uint32_t>(stream.size()));
   for (const Bytes& stream : streams) append(out, stream);
-  return out;
-}
-
-Bytes join(const std::vector<Bytes>& columns) {
-  Bytes out;
-  for (const Bytes& column : columns) append(out, column);
-  return out;
-}
-
-/// Speed is what these codecs are for: only what shrinks without a model of the geometry is touched.
-Result<Bytes> store_columns(const format::MeshRecord& mesh, const PageModel& model, format::Codec codec) {
-  const Bytes columns = join(make_columns(mesh, model));
-  TRY_LET(side, codec == format::Codec::kLz4 ? pack_lz4(columns) : pack_zstd(columns));
-  Bytes out = start_stored(format::PageMethod::kColumns, *side, columns.size(), 0);
-  for (const std::uint32_t word : model.stream_words) put_u32(out, word);
   return out;
 }
 
@@ -67,17 +46,6 @@ Bytes store_prefix_codes(const format::MeshRecord& mesh, const PageModel& model)
   return store_strips(side, side_bytes, model, coded.streams);
 }
 
-Result<Bytes> store_draco(const format::MeshRecord& mesh, const PageModel& model) {
-  const Bytes columns = join(make_columns(mesh, model));
-  TRY_LET(side, pack_draco({columns.begin(), columns.end()}));
-  std::vector<Bytes> streams;
-  for (std::uint32_t s = 0; s < format::kFieldStreams + format::field_count(mesh); ++s) {
-    TRY_LET(stream, pack_draco(model.streams[s]));
-    streams.push_back(std::move(*stream));
-  }
-  return store_strips(*side, columns.size(), model, streams);
-}
-
 }  // namespace
 
 Result<std::vector<std::uint8_t>> store_page(const format::MeshRecord& mesh, std::span<const std::uint8_t> page,
@@ -86,13 +54,7 @@ Result<std::vector<std::uint8_t>> store_page(const format::MeshRecord& mesh, std
   std::memcpy(words.data(), page.data(), words.size() * sizeof(std::uint32_t));
   const std::optional<PageModel> model = page.size() % 4 == 0 ? model_page(mesh, words) : std::nullopt;
   if (!model) return Error{ErrorCode::kBuildFailed, "pack", "the page is not in the form that the format prescribes"};
-  switch (codec) {  // without a default, so that the compiler names a new codec
-    case format::Codec::kStrips: return store_prefix_codes(mesh, *model);
-    case format::Codec::kDraco: return store_draco(mesh, *model);
-    case format::Codec::kLz4:
-    case format::Codec::kZstd: return store_columns(mesh, *model, codec);
-    case format::Codec::kNone: break;
-  }
+  if (codec == format::Codec::kStrips) return store_prefix_codes(mesh, *model);
   return Error{ErrorCode::kBuildFailed, "pack", "pages of this codec are not stored"};
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Pack: the GPU-ready bytes of a page become its disk bytes. Levels are fixed: equal bytes in, equal bytes out.
+// Pack: the GPU-ready bytes of a page become its disk bytes, by a codec that is written (format/names.h). Equal bytes
+// in, equal bytes out.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +22,7 @@ struct PackedPage {
                                                            std::span<const std::uint8_t> page, format::Codec codec);
 
 /// `mesh` is the page's, `page` as encode makes it. Errors: kBuildFailed where the page is not in the
-/// form that the format prescribes, or where the codec itself fails.
+/// form that the format prescribes, or where the codec is one that is not written.
 [[nodiscard]] Result<PackedPage> pack_page(const format::MeshRecord& mesh, std::span<const std::uint8_t> page,
                                            format::Codec codec);
 

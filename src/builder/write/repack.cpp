@@ -7,7 +7,6 @@
 
 #include "base/parallel.h"
 #include "base/try.h"
-#include "builder/pack/pack.h"
 #include "builder/write/file_layout.h"
 
 namespace meshlode::builder {
@@ -54,7 +53,7 @@ std::vector<T> read_table(const RepackInput& input, format::SectionId id) {
 
 Result<StoredPage> store_page_of(const RepackInput& input, const format::MeshRecord& mesh, std::size_t page) {
   TRY_LET(decoded, input.load_page(page));
-  auto packed = pack_page(mesh, *decoded, input.codec);
+  auto packed = input.pack(mesh, *decoded, input.codec);
   if (!packed) {
     return Error{packed.error().code, "page " + std::to_string(page), packed.error().detail};
   }

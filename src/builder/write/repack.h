@@ -13,6 +13,7 @@
 #include <meshlode/result.h>
 
 #include "base/hash.h"
+#include "builder/pack/pack.h"
 
 namespace meshlode::builder {
 
@@ -31,6 +32,9 @@ struct RepackInput {
   /// One page, decoded and checked; called from several threads at once.
   std::function<Result<std::vector<std::uint8_t>>(std::size_t page)> load_page;
   format::Codec codec = format::Codec::kNone;
+  /// How a page is stored. Tests of codecs that are not written any more have another one.
+  std::function<Result<PackedPage>(const format::MeshRecord&, std::span<const std::uint8_t>, format::Codec)> pack =
+      pack_page;
 };
 
 /// The whole file: for an asset of this writer's the bytes that a build with that codec writes. Sections that are not

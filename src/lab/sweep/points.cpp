@@ -47,15 +47,13 @@ struct Setting {
 };
 /// Settings that interact: what a strip costs depends on how long clusters let it be, what a proof costs on who asks.
 const std::vector<Setting> kCorners[] = {
-    {{"preset", "fast"}, {"codec", "strips"}},
-    {{"preset", "best"}, {"codec", "strips"}},
-    {{"codec", "strips"}, {"cluster_triangles", "256"}},
-    {{"codec", "strips"}, {"cluster_triangles", "64"}},
+    {{"preset", "fast"}, {"codec", "none"}},
+    {{"preset", "best"}, {"codec", "none"}},
+    {{"strip_effort", "best"}, {"cluster_triangles", "256"}},
+    {{"strip_effort", "best"}, {"cluster_triangles", "64"}},
     {{"preset", "fast"}, {"error_tier", "measured"}},
     {{"preset", "best"}, {"error_tier", "certified"}},
-    {{"codec", "strips"}, {"normal_error", "1"}},
-    {{"codec", "strips"}, {"strip_effort", "best"}},
-    {{"preset", "best"}, {"codec", "draco"}},
+    {{"strip_effort", "best"}, {"normal_error", "1"}},
 };
 
 std::optional<std::size_t> find_value(const Knob& knob, const std::string& word) {
@@ -110,18 +108,8 @@ std::vector<std::string> arguments_of(std::span<const Knob> knobs, const Point& 
 namespace {
 
 void add_codec_knobs(std::vector<Knob>& knobs) {
-  knobs.push_back({"codec",
-                   "codec",
-                   "--codec",
-                   "",
-                   KnobKind::kBuild,
-                   0,
-                   {{"none", 1.0, 0.0},
-                    {"lz4", 1.0, kSecond},
-                    {"zstd", 1.1, kSecond},
-                    {"strips", 1.2, kFirst},
-                    {"draco", 1.2, kSecond}},
-                   true});
+  knobs.push_back(
+      {"codec", "codec", "--codec", "", KnobKind::kBuild, 0, {{"strips", 1.0, 0.0}, {"none", 1.0, kFirst}}, true});
   knobs.push_back({"strip_effort",
                    "strip effort",
                    "--strip-effort",

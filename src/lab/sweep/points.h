@@ -86,7 +86,7 @@ struct Point {
 
 /// `build`, or `study` where the point is experimental.
 [[nodiscard]] const char* build_verb(std::span<const Knob> knobs, const Point& point);
-/// Options that are not the usual ones: "--codec", "strips", …
+/// Options that are not the usual ones: "--codec", "none", …
 [[nodiscard]] std::vector<std::string> build_arguments(std::span<const Knob> knobs, const Point& point);
 [[nodiscard]] std::vector<std::string> draw_arguments(std::span<const Knob> knobs, const Point& point);
 /// Expected build time over the baseline's.

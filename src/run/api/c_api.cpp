@@ -319,7 +319,7 @@ meshlode_status meshlode_view_page(const meshlode_asset* asset, uint32_t page, c
                                    meshlode_error* error) {
   if (page >= asset->asset.pages().size()) return fail(error, MESHLODE_USAGE, "page: does not exist");
   if (asset->asset.pages()[page].codec != format::Codec::kNone) {
-    return fail(error, MESHLODE_UNSUPPORTED, "page: is stored compressed");
+    return fail(error, MESHLODE_UNSUPPORTED, "page: is stored compressed, which meshlode_load_page unpacks");
   }
   return guard(error, [&] {
     const auto bytes = run::load_page(asset->asset, PageId(page));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The wrappers of the decompression libraries, one file each.
+// The wrappers of the decompression libraries, one file each: of codecs that nothing writes any more. no_old_codecs.cpp
+// stands for all of them where they are not built in.
 #pragma once
 
 #include <cstdint>

@@ -7,6 +7,7 @@
 
 #include "base/hash.h"
 #include "base/try.h"
+#include "format/names.h"
 #include "run/unpack/check_page.h"
 #include "run/unpack/decompressors.h"
 #include "run/unpack/unpack_page.h"
@@ -51,7 +52,12 @@ Result<PageBytes> load_page(const Asset& asset, PageId page) {
   const std::span<std::uint32_t> words{reinterpret_cast<std::uint32_t*>(decoded.data()), decoded.size() / 4};
   const UnpackOutcome outcome = unpack_page(mesh, record, stored, words);
   if (outcome == UnpackOutcome::kNotBuiltIn) {
-    return page_error(page, "codec", "this reader was built without the page's codec", ErrorCode::kUnsupported);
+    return page_error(
+        page, "codec",
+        std::string("is ") + format::name_of(record.codec) +
+            ", which nothing writes since version 0.2 and this build does not read: build the asset again, "
+            "or store it anew by `meshlode repack --codec strips` of a build with MESHLODE_OLD_CODECS=ON",
+        ErrorCode::kUnsupported);
   }
   if (outcome == UnpackOutcome::kBroken) return page_error(page, "codec", "the stored bytes do not unpack");
   if (hash64(decoded) != record.decoded_checksum) {

@@ -3,14 +3,10 @@
 // by a probability table whose size Draco holds against the bytes at hand.
 #include "run/unpack/decompressors.h"
 
-#ifdef MESHLODE_HAS_DRACO
 #include <draco/compression/entropy/symbol_decoding.h>
 #include <draco/core/decoder_buffer.h>
-#endif
 
 namespace meshlode::run {
-
-#ifdef MESHLODE_HAS_DRACO
 
 constexpr std::uint16_t kBitstreamVersion = 0x0202;  ///< of the symbol coder; the newest that there is
 
@@ -21,13 +17,5 @@ UnpackOutcome unpack_draco(std::span<const std::uint8_t> stored, std::span<std::
   const bool is_ok = draco::DecodeSymbols(static_cast<std::uint32_t>(out.size()), 1, &buffer, out.data());
   return is_ok && buffer.remaining_size() == 0 ? UnpackOutcome::kOk : UnpackOutcome::kBroken;
 }
-
-#else
-
-UnpackOutcome unpack_draco(std::span<const std::uint8_t>, std::span<std::uint32_t>) {
-  return UnpackOutcome::kNotBuiltIn;
-}
-
-#endif
 
 }  // namespace meshlode::run

@@ -64,10 +64,10 @@ TEST_F(BatchTest, ASecondRunDoesNothingAndAChangeRebuildsItsDependantsAlone) {
   EXPECT_EQ(statuses(run({"1", "2", "3"}, "out")), "unchanged cached unchanged");
 
   BatchOptions other;
-  other.pipeline.codec = format::Codec::kLz4;
+  other.pipeline.codec = format::Codec::kNone;
   const auto with_codec = run({"1", "2"}, "out", other);
   EXPECT_EQ(statuses(with_codec), "built built");
-  EXPECT_EQ(with_codec[0].reason, "codec is lz4, was none");
+  EXPECT_EQ(with_codec[0].reason, "codec is none, was strips");
   EXPECT_EQ(statuses(run({"1", "2", "3"}, "out")), "cached cached unchanged");
 }
 
@@ -130,7 +130,7 @@ TEST_F(BatchTest, TwoHundredRandomEditsGiveTheBytesOfCleanBuilds) {
       case 1: folder_.write("in/" + name + ".png", std::string(variant + 1, 'p')); break;
       case 2: fs::remove(folder_.path("in/" + name + ".png")); break;
       case 3: options.pipeline.normal_error = 0.1 * (1.0 + variant); break;
-      case 4: options.pipeline.codec = variant == 0 ? format::Codec::kLz4 : format::Codec::kNone; break;
+      case 4: options.pipeline.codec = variant == 0 ? format::Codec::kNone : format::Codec::kStrips; break;
       default: fs::remove(folder_.path("out/" + name + ".lode"));
     }
     options.import.may_lack_images = true;
@@ -155,7 +155,7 @@ TEST_F(BatchTest, AMeshThatIsTheSameIsNotBuiltAgain) {
   EXPECT_EQ(statuses(painted), "built");
   EXPECT_EQ(painted[0].meshes_from_cache, 1U);
   BatchOptions packed;
-  packed.pipeline.codec = format::Codec::kZstd;  // of the same mesh
+  packed.pipeline.codec = format::Codec::kNone;  // of the same mesh
   EXPECT_EQ(run({"1"}, "packed", packed)[0].meshes_from_cache, 1U);
   BatchOptions finer;
   finer.pipeline.position_error = 1e-4;

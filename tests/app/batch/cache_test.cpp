@@ -222,7 +222,7 @@ TEST(Ingredients, AreOtherOnesForEverySettingThatChangesBytes) {
   changed[1].error_tier = format::ErrorTier::kQem;
   changed[2].attributes = AttributeChoice::kAll;
   changed[3].grid_step = 0.1;
-  changed[4].codec = format::Codec::kZstd;
+  changed[4].codec = format::Codec::kNone;
   changed[5].partition_seed = 2;
   changed[6].repair = true;
   changed[7].max_cluster_triangles = 64;

@@ -187,26 +187,26 @@ class SettingsFolders : public ::testing::Test {
 };
 
 TEST_F(SettingsFolders, AreReadFromTheRootDown) {
-  write("", R"({"codec": "draco"})");
-  write("in", R"({"codec": "lz4"})");
-  write("in/deep", R"({"codec": "zstd"})");
-  const auto codecs = [&](const fs::path& scene, const fs::path& root) {
+  write("", R"({"preset": "fast"})");
+  write("in", R"({"preset": "default"})");
+  write("in/deep", R"({"preset": "best"})");
+  const auto presets = [&](const fs::path& scene, const fs::path& root) {
     std::vector<FileId> read;
     const auto layers = read_settings_files(scene, root, read);
     EXPECT_TRUE(layers);
     std::string out;
-    for (SettingLayer layer : *layers) out += *layer[Setting::kCodec] + " ";
+    for (SettingLayer layer : *layers) out += *layer[Setting::kPreset] + " ";
     EXPECT_EQ(read.size(), layers->size());
     return out;
   };
-  EXPECT_EQ(codecs(root_ / "in/deep/a.glb", root_ / "in"), "lz4 zstd ");
-  EXPECT_EQ(codecs(root_ / "in/deep/a.glb", root_ / "in/"), "lz4 zstd ");
-  EXPECT_EQ(codecs(root_ / "in/deep/a.glb", root_), "draco lz4 zstd ");
-  EXPECT_EQ(codecs(root_ / "in/deep/a.glb", ""), "zstd ");
-  EXPECT_EQ(codecs(root_ / "in/a.glb", root_ / "in"), "lz4 ");
-  EXPECT_EQ(codecs(root_ / "in/a.glb", root_ / "in/deep"), "lz4 ") << "no folder above the scene";
+  EXPECT_EQ(presets(root_ / "in/deep/a.glb", root_ / "in"), "default best ");
+  EXPECT_EQ(presets(root_ / "in/deep/a.glb", root_ / "in/"), "default best ");
+  EXPECT_EQ(presets(root_ / "in/deep/a.glb", root_), "fast default best ");
+  EXPECT_EQ(presets(root_ / "in/deep/a.glb", ""), "best ");
+  EXPECT_EQ(presets(root_ / "in/a.glb", root_ / "in"), "default ");
+  EXPECT_EQ(presets(root_ / "in/a.glb", root_ / "in/deep"), "default ") << "no folder above the scene";
   fs::remove(root_ / "in" / kSettingsFileName);
-  EXPECT_EQ(codecs(root_ / "in/deep/a.glb", root_), "draco zstd ");
+  EXPECT_EQ(presets(root_ / "in/deep/a.glb", root_), "fast best ");
 }
 
 TEST_F(SettingsFolders, AFolderOfThatNameIsAnError) {

@@ -45,11 +45,11 @@ TEST(Settings, ThePresetSetsTheTierUnlessOneIsSaid) {
 }
 
 TEST(Settings, TheLaterLayerWinsAndIsNamed) {
-  const std::array layers{layer_of({{Setting::kCodec, "zstd"}, {Setting::kNormalError, "0.5"}}, "far"),
-                          layer_of({{Setting::kCodec, "lz4"}}, "near")};
+  const std::array layers{layer_of({{Setting::kCodec, "strips"}, {Setting::kNormalError, "0.5"}}, "far"),
+                          layer_of({{Setting::kCodec, "none"}}, "near")};
   const auto settled = settle(layers);
   ASSERT_TRUE(settled);
-  EXPECT_EQ(settled->options.codec, format::Codec::kLz4);
+  EXPECT_EQ(settled->options.codec, format::Codec::kNone);
   EXPECT_EQ((*settled)[Setting::kCodec].from, "near");
   EXPECT_EQ(settled->options.normal_error, 0.5);
   EXPECT_EQ((*settled)[Setting::kNormalError].from, "far");

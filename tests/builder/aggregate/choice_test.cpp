@@ -129,6 +129,47 @@ TEST(AggregateParts, WhatAMaskFarOutLetsThroughNobodyKnows) {
   EXPECT_EQ(decide(tree).most_triangles, (Most{0, 0, 512})) << "the grass is left";
 }
 
+/// The default: as auto where every material of the pieces is masked, and as never elsewhere.
+TEST(AggregateChoice, MaskedIsOfMaskedCardsAlone) {
+  std::vector<scene::SceneMaterial> materials(2);
+  materials[1].alpha_mode = scene::AlphaMode::kMask;
+  const auto decide = [&](const scene::SourceMesh& mesh) {
+    return decide_aggregate(mesh, {.choice = AggregateChoice::kMasked, .materials = materials});
+  };
+  const auto all_of = [](scene::Primitive shape, std::uint32_t material) {
+    shape.material = MaterialId(material);
+    return lab::as_mesh(std::move(shape));
+  };
+  const AggregateDecision leaves = decide(all_of(lab::make_foliage(2000), 1));
+  EXPECT_TRUE(leaves.is_aggregate && leaves.most_triangles.empty());
+  const AggregateDecision blades = decide(all_of(lab::make_grass(2000), 0));
+  EXPECT_FALSE(blades.is_aggregate);
+  EXPECT_TRUE(blades.reason.empty()) << "nothing is recorded, as with never: " << blades.reason;
+  materials[0].alpha_mode = scene::AlphaMode::kBlend;
+  EXPECT_TRUE(decide(all_of(lab::make_grass(2000), 0)).reason.empty()) << "what is blended has no mask";
+  materials[0].alpha_mode = scene::AlphaMode::kOpaque;
+
+  EXPECT_EQ(decide(mesh_of({lab::make_rock(16), lab::make_foliage(2000)})).most_triangles, (Most{0, 512}));
+  EXPECT_FALSE(decide(mesh_of({lab::make_foliage(1000), lab::make_foliage(1000)})).is_aggregate)
+      << "the same cards with both materials are pieces of both";
+  scene::SourceMesh meadow = mesh_of({lab::make_grass(2000), lab::make_foliage(2000)});
+  for (Vec3d& p : meadow.primitives[0].positions) p.x += 100.0;
+  EXPECT_EQ(decide(meadow).most_triangles, (Most{0, 512}))
+      << "opaque blades stay, though all together are small pieces";
+  const AggregateDecision few = decide(mesh_of({lab::make_rock(16), lab::make_foliage(100)}));
+  EXPECT_FALSE(few.is_aggregate);
+  EXPECT_NE(few.reason, "") << "a mesh with a mask is told why it is none";
+  const scene::SourceMesh forest = all_of(lab::make_foliage(2000), 1);
+  for (const bool is_topology : {true, false}) {
+    const AggregateDecision kept = decide_aggregate(forest, {.choice = AggregateChoice::kMasked,
+                                                             .keep_topology = is_topology,
+                                                             .lock_borders = !is_topology,
+                                                             .materials = materials});
+    EXPECT_FALSE(kept.is_aggregate);
+    EXPECT_NE(kept.reason.find("so is each piece"), std::string::npos) << kept.reason;
+  }
+}
+
 TEST(AggregateParts, OfWhatIsLeftOutNothingRemains) {
   const scene::SourceMesh tree = mesh_of({lab::make_rock(16), lab::make_foliage(2000)});
   AggregateDecision decision = decide_aggregate(tree, {.choice = AggregateChoice::kAuto});

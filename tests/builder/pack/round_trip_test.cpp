@@ -7,6 +7,7 @@
 #include "builder/pack/pack.h"
 #include "builder/pack/page_model.h"
 #include "run/unpack/unpack_page.h"
+#include "support/old_codecs/old_codecs.h"
 #include "support/random_page.h"
 
 namespace meshlode::builder {
@@ -35,7 +36,7 @@ std::vector<RandomPageOptions> every_shape() {
 }
 
 void expect_round_trip(const RandomPage& page, Codec codec) {
-  const auto stored = store_page(page.mesh, bytes_of(page), codec);  // noise does not shrink
+  const auto stored = test::store_page(page.mesh, bytes_of(page), codec);  // noise does not shrink
   ASSERT_TRUE(stored) << stored.error().detail;
   format::PageRecord record = page.record;
   record.codec = codec;
@@ -74,8 +75,8 @@ TEST(Pack, ClustersOfOneTriangleAndOf256VerticesComeBack) {
 TEST(Pack, TheSamePageGivesTheSameBytes) {
   const RandomPage page = test::make_random_page({.seed = 5, .max_field_bits = 5});
   for (const Codec codec : {Codec::kLz4, Codec::kZstd, Codec::kStrips, Codec::kDraco}) {
-    const auto first = store_page(page.mesh, bytes_of(page), codec);
-    const auto second = store_page(page.mesh, bytes_of(page), codec);
+    const auto first = test::store_page(page.mesh, bytes_of(page), codec);
+    const auto second = test::store_page(page.mesh, bytes_of(page), codec);
     ASSERT_TRUE(first && second);
     EXPECT_EQ(*first, *second);
   }
@@ -83,10 +84,18 @@ TEST(Pack, TheSamePageGivesTheSameBytes) {
 
 TEST(Pack, APageThatDoesNotShrinkIsStoredAsItIs) {
   const RandomPage page = test::make_random_page({.seed = 9, .cluster_count = 1, .max_triangles = 1});
-  const auto packed = pack_page(page.mesh, bytes_of(page), Codec::kZstd);
+  const auto packed = test::pack_page(page.mesh, bytes_of(page), Codec::kZstd);
   ASSERT_TRUE(packed);
   EXPECT_EQ(packed->codec, Codec::kNone);
   EXPECT_TRUE(packed->bytes.empty());
+}
+
+TEST(Pack, OldCodecsAreNotWritten) {
+  const RandomPage page = test::make_random_page({.seed = 5, .max_field_bits = 5});
+  for (const Codec codec : {Codec::kLz4, Codec::kZstd, Codec::kDraco}) {
+    EXPECT_FALSE(pack_page(page.mesh, bytes_of(page), codec));
+    EXPECT_FALSE(store_page(page.mesh, bytes_of(page), codec));
+  }
 }
 
 /// Vertices that an earlier cluster has are named, not stored again.

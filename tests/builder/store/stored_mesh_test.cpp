@@ -234,7 +234,7 @@ TEST(StoredMesh, HostileBytesAreRefusedOrBuildSomethingWithoutACrash) {
     hostile.entries = store.entries;
     hostile.entries.begin()->second = changed;
     options.mesh_store = &hostile;
-    options.codec = format::kCodecNames[random.below(format::kCodecNames.size())].value;
+    options.codec = format::kWrittenCodecNames[random.below(format::kWrittenCodecNames.size())].value;
     PipelineReport report;
     static_cast<void>(build_lode(scene, options, {}, report));
   }

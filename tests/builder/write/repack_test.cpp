@@ -13,6 +13,7 @@
 #include "judge/validate/validate.h"
 #include "run/read/asset.h"
 #include "run/unpack/unpack.h"
+#include "support/old_codecs/old_codecs.h"
 #include "support/reseal.h"
 #include "support/sample_asset.h"
 
@@ -37,6 +38,7 @@ RepackInput input_of(const run::Asset& asset, format::Codec codec) {
     return Bytes(page->bytes().begin(), page->bytes().end());
   };
   input.codec = codec;
+  input.pack = test::pack_page;
   return input;
 }
 

@@ -23,7 +23,7 @@ run build in -O out --cache cache --dry-run
 printf 'A picture' >in/b.png
 run build in -O out --cache cache --dry-run
 statuses
-run build in -O out --cache cache --dry-run --codec zstd --normal-error 0.2
+run build in -O out --cache cache --dry-run --codec none --normal-error 0.2
 statuses --normal-error 0.2
 rm out/a.lode
 run build in -O out --cache cache --dry-run --normal-error 0.2

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Another codec without the scene: the bytes of a build with that codec, from every codec to every other.
-codecs="none lz4 zstd strips draco"
+codecs="none strips"
 cp "$DATA/city.glb" a.glb  # five meshes
 for codec in $codecs; do
   code build --quiet a.glb -o "$codec.lode" --codec "$codec"
@@ -13,7 +13,7 @@ for from in $codecs; do
   done
 done
 cp "$DATA/rock.glb" b.glb  # with an image
-code build --quiet b.glb -o b.lode --codec lz4
+code build --quiet b.glb -o b.lode --codec none
 code build --quiet b.glb -o b_strips.lode --codec strips
 for jobs in 1 3; do
   code repack --quiet b.lode -o "out$jobs.lode" --codec strips --jobs $jobs
@@ -28,6 +28,18 @@ code verify out.lode --source b.glb --quick --quiet
 run repack b.lode
 run repack b.lode -o c.lode
 run repack b.lode -o c.lode --codec gzip
+# Codecs of before 0.2: not written, and pages that have them are refused by name, whoever reads them.
+for codec in lz4 zstd draco; do
+  "$STORE_BY" $codec none.lode $codec.lode
+  run repack none.lode -o c.lode --codec $codec
+  run repack $codec.lode -o c.lode --codec strips
+  code info $codec.lode
+  run validate $codec.lode
+done
+run build a.glb -o c.lode --codec zstd
+run extract lz4.lode -o c.glb --error 1
+run measure zstd.lode --source a.glb -o c.lode
+run doctor draco.lode
 run repack b.lode -o b.lode --codec none
 ln -s b.lode link
 run repack b.lode -o link --codec none
@@ -38,15 +50,15 @@ for size in 0 1 127 128 1000 5000 20000 $(($(wc -c <b.lode) - 1)); do
   code repack --quiet short.lode -o c.lode --codec none
 done
 # A bit in each of 40 places all over the file: refused, or one that nothing reads (between sections).
-last=$(($(wc -c <zstd.lode) - 1)) refused=0
+last=$(($(wc -c <strips.lode) - 1)) refused=0
 for i in $(seq 0 39); do
-  cp zstd.lode changed.lode
+  cp strips.lode changed.lode
   at=$((i * last / 39))
-  byte=$(od -An -tu1 -j $at -N 1 zstd.lode)
+  byte=$(od -An -tu1 -j $at -N 1 strips.lode)
   printf "\\$(printf %o $((byte ^ 16)))" | dd of=changed.lode bs=1 seek=$at conv=notrunc status=none
-  "$MESHLODE" repack --quiet changed.lode -o c.lode --codec strips 2>../stderr
+  "$MESHLODE" repack --quiet changed.lode -o c.lode --codec none 2>../stderr
   case $? in
-    0) cmp c.lode strips.lode; rm c.lode ;;
+    0) cmp c.lode none.lode; rm c.lode ;;
     3) refused=$((refused + 1)) ;;
     *) echo "byte $at: $(cat ../stderr)" ;;
   esac

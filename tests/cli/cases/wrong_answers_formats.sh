@@ -5,7 +5,7 @@ code build --quiet a.glb -o a.lode
 for name in x.jpg x.jpeg x.webp x.bmp x.gltf x.glb x.lode x.json; do run render a.lode -o $name; done
 for name in x.gltf x.obj x.ply x.png; do run extract a.lode --error 0.1 -o $name; done
 run extract a.lode --stuck -o x.gltf
-for name in x.glb x.png x.zip; do run build a.glb -o $name; run repack a.lode -o $name --codec lz4; done
+for name in x.glb x.png x.zip; do run build a.glb -o $name; run repack a.lode -o $name --codec none; done
 run build a.glb -o b.lode --manifest m.xml
 run build a.glb -o b.lode --junit j.json
 run build a.glb -o b.lode --report r.csv

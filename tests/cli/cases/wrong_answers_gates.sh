@@ -47,7 +47,7 @@ lines validate --quiet a.lode
 lines verify --quiet a.lode --source a.glb --quick
 lines render --quiet a.lode -o a.png --size 16x16
 lines extract --quiet a.lode --level 8 -o cut.glb
-lines repack --quiet a.lode -o h.lode --codec lz4
+lines repack --quiet a.lode -o h.lode --codec none
 printf 'x' >noise.lode
 lines validate --quiet noise.lode
 lines info --quiet noise.lode

@@ -32,7 +32,8 @@ echo "empty files"
 for name in e.glb e.gltf e.ply e.obj e.stl e.lode e.txt; do : >$name; run build $name -o x.lode; run info $name; rm $name; done
 printf ' \n\t\n' >white.obj; run build white.obj -o x.lode; rm white.obj
 echo "words"
-run build rock.glb --codec zst
+run build rock.glb --codec strip
+run build rock.glb --codec zstd
 run build rock.glb --error-tier=certifed
 run build rock.glb --codec gzip
 run render a.lode -o x.png --view cluster

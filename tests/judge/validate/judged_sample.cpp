@@ -42,9 +42,8 @@ std::vector<std::uint8_t> judged_sample_bytes(format::Codec codec, bool has_prom
   input.meta_json =
       R"({"generator":"a test","source":{"file":"sample.glb","hash":")" + scene.source_hash +
       R"("},"settings":{"error_tier":"qem","cluster_triangles":256,"normal_error":0.1,"uv_error":0.0001,"uv_error_unit":"uv"},"plan":[],"left_out":[]})";
-  input.codec = codec;
   if (has_promises) add_promises(input);
-  return value_or_abort(builder::write_asset(std::move(input)));
+  return write_by(std::move(input), codec);
 }
 
 }  // namespace meshlode::test

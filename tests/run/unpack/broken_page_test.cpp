@@ -5,9 +5,9 @@
 
 #include <gtest/gtest.h>
 
-#include "builder/pack/pack.h"
 #include "format/page_streams.h"
 #include "run/unpack/unpack_page.h"
+#include "support/old_codecs/old_codecs.h"
 #include "support/random.h"
 #include "support/random_page.h"
 
@@ -25,7 +25,7 @@ struct Stored {
 
 Stored store(const test::RandomPageOptions& options, Codec codec) {
   Stored stored{test::make_random_page(options), {}, {}};
-  const auto bytes = builder::store_page(
+  const auto bytes = test::store_page(
       stored.page.mesh, {reinterpret_cast<const std::uint8_t*>(stored.page.words.data()), stored.page.words.size() * 4},
       codec);
   EXPECT_TRUE(bytes);

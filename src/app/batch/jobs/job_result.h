@@ -73,6 +73,7 @@ struct JobResult {
   std::uint64_t meshes_from_cache = 0;
   std::vector<builder::StageTime> stages;
   std::vector<builder::LevelTime> levels;
+  std::string decided;                       ///< describe_decided(); empty where nothing was built
   std::vector<Dependency> files;             ///< where asked for
   std::vector<std::string> refused_outputs;  ///< of BatchOptions::side_outputs: they are files of the scene
 

@@ -11,6 +11,7 @@
 #include "app/batch/cache/cache.h"
 #include "app/batch/cache/ingredients.h"
 #include "app/batch/cache/mesh_entries.h"
+#include "app/batch/work/decided.h"
 #include "app/batch/work/warnings.h"
 #include "base/guarded.h"
 #include "base/try.h"
@@ -295,6 +296,7 @@ class Run {
     result_.facts.draws_nothing = report.clusters == 0;
     result_.stages.insert(result_.stages.end(), report.stages.begin(), report.stages.end());
     result_.levels = std::move(report.levels);
+    if (!report.decisions.empty()) result_.decided = describe_decided(pipeline_, report.decisions);
     for (const builder::PlanDecision& decision : report.decisions) {
       if (decision.kept) continue;
       result_.facts.planned_out.push_back({decision.what, decision.reason});

@@ -25,7 +25,7 @@ export_as() {
     echo "FAILED: extract $name $*"; failed=1
   fi
 }
-codecs=(none lz4 zstd strips draco)
+codecs=(none strips)
 scenes=0
 # scene FILE
 scene() {

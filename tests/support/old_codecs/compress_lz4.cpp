@@ -2,13 +2,13 @@
 // Wrapper of LZ4's compressor: one block, no frame, because the page record already holds sizes and checksums.
 #include <lz4hc.h>
 
-#include "builder/pack/compressors.h"
+#include "support/old_codecs/compressors.h"
 
-namespace meshlode::builder {
+namespace meshlode::test {
 
 constexpr int kLz4Level = 9;
 
-Result<std::vector<std::uint8_t>> pack_lz4(std::span<const std::uint8_t> bytes) {
+Result<std::vector<std::uint8_t>> compress_lz4(std::span<const std::uint8_t> bytes) {
   const int size = static_cast<int>(bytes.size());
   std::vector<std::uint8_t> out(static_cast<std::size_t>(LZ4_compressBound(size)));
   const int written = LZ4_compress_HC(reinterpret_cast<const char*>(bytes.data()), reinterpret_cast<char*>(out.data()),
@@ -18,4 +18,4 @@ Result<std::vector<std::uint8_t>> pack_lz4(std::span<const std::uint8_t> bytes) 
   return out;
 }
 
-}  // namespace meshlode::builder
+}  // namespace meshlode::test

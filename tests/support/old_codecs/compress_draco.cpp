@@ -5,11 +5,11 @@
 #include <draco/core/encoder_buffer.h>
 #include <draco/core/options.h>
 
-#include "builder/pack/compressors.h"
+#include "support/old_codecs/compressors.h"
 
-namespace meshlode::builder {
+namespace meshlode::test {
 
-Result<std::vector<std::uint8_t>> pack_draco(const std::vector<std::uint32_t>& values) {
+Result<std::vector<std::uint8_t>> compress_draco(const std::vector<std::uint32_t>& values) {
   std::vector<std::uint8_t> out;
   if (values.empty()) return out;
   draco::EncoderBuffer buffer;
@@ -22,4 +22,4 @@ Result<std::vector<std::uint8_t>> pack_draco(const std::vector<std::uint32_t>& v
   return out;
 }
 
-}  // namespace meshlode::builder
+}  // namespace meshlode::test
