@@ -65,7 +65,7 @@ int main(void) {
   scene.meshes = &mesh;
   scene.mesh_count = 1;
   meshlode_build_defaults(&options);
-  options.codec = 2; /* Zstandard */
+  options.codec = 0; /* pages as they are decoded: they can be mapped */
   if (meshlode_build_to_buffer(&scene, &options, &bytes, &size, &error) != MESHLODE_OK) {
     fprintf(stderr, "%s\n", error.text);
     return (int)error.status;

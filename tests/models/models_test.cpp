@@ -80,7 +80,7 @@ std::optional<Built> build(std::optional<scene::Scene> scene) {
 }
 
 /// Of a scene with one mesh, under a seed of the partitioner.
-double stored_per_source(const scene::Scene& scene, std::uint32_t seed) {
+[[maybe_unused]] double stored_per_source(const scene::Scene& scene, std::uint32_t seed) {
   builder::PipelineOptions options;
   options.partition_seed = seed;
   options.error_tier = format::ErrorTier::kQem;  // no triangle depends on errors

@@ -3,6 +3,7 @@
 // that none of its steps is cut in two.
 #include "outputs.h"
 
+#include <atomic>
 #include <csignal>
 #include <cstdlib>
 #include <exception>
@@ -68,6 +69,8 @@ Interrupt& interrupt() {
   }
   if (is_memory) {
     output_files().abandon();
+    static std::atomic_flag is_said;  // several threads may come here at once: the first says it and ends all
+    while (is_said.test_and_set()) ::pause();
     constexpr std::string_view kLine = "meshlode: out of memory\n";
     if (::write(STDERR_FILENO, kLine.data(), kLine.size()) < 0) {
       // Nobody is left to tell.

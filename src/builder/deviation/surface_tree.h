@@ -79,7 +79,7 @@ class SurfaceTree {
   }
 
   /// Calls visit(slot) for triangles near a segment, all that it meets among them: each once, in an order that follows
-  /// from the tree.
+  /// from the tree, until it returns false.
   template <class Visit>
   void visit_along(const Vec3d& from, const Vec3d& to, const Visit& visit) const;
 
@@ -170,8 +170,9 @@ void SurfaceTree::visit_along(const Vec3d& from, const Vec3d& to, const Visit& v
       if (entry.level + 1 < depth) {
         stack[size++] = {entry.level + 1, child};
       } else {
-        for (std::uint32_t slot = 4 * child; slot < std::min(4 * child + 4, this->size()); ++slot)
-          visit(TreeSlot(slot));
+        for (std::uint32_t slot = 4 * child; slot < std::min(4 * child + 4, this->size()); ++slot) {
+          if (!visit(TreeSlot(slot))) return;
+        }
       }
     }
   }

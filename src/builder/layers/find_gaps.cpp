@@ -113,9 +113,10 @@ class GapFinder {
                      kLeastGap};
         LayerHit hit;
         if (is_asked) placed_.meet_itself(mesh, ray, hit);
-        for (std::size_t k = 0; k < std::min(kPlaces, places); ++k) {
+        for (std::size_t k = 0; k < std::min(kPlaces, places) && !hit.is_crowded; ++k) {
           placed_.meet_others(mesh, (first + k) % places, ray, hit);
         }
+        if (hit.is_crowded) return;
         if (hit.mesh == kNoId) continue;
         mark(mesh, triangle, hit.at * gaps_[mesh].reach);
         mark(hit.mesh, hit.triangle, hit.gap);

@@ -52,6 +52,7 @@ struct LayerHit {
   std::uint32_t mesh = kNoId, triangle = kNoId;
   double gap = 0.0;           ///< in the frame of that mesh
   TriangleCorners corners{};  ///< canonical, in that frame: of two in one place the lesser is met
+  bool is_crowded = false;    ///< too many triangles are near to the ray: no layers, and what was met is not all
 };
 
 class PlacedShapes {

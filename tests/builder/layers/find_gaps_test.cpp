@@ -275,7 +275,10 @@ TEST(VisitAlong, AllThatASegmentMeetsIsVisitedOnce) {
     std::fill(visits.begin(), visits.end(), 0);
     // Along an axis and not; through the triangle.
     const Vec3d along = t % 2 == 0 ? Vec3d(0.0, 0.1, 0.0) : Vec3d(0.05, -0.02, 0.03);
-    tree.visit_along(middle - along, middle + along, [&](TreeSlot slot) { ++visits[tree.triangle_at(slot)]; });
+    tree.visit_along(middle - along, middle + along, [&](TreeSlot slot) {
+      ++visits[tree.triangle_at(slot)];
+      return true;
+    });
     EXPECT_EQ(visits[t], 1);
     EXPECT_LE(*std::max_element(visits.begin(), visits.end()), 1);
     const auto met = static_cast<std::size_t>(std::count(visits.begin(), visits.end(), 1));
@@ -285,7 +288,7 @@ TEST(VisitAlong, AllThatASegmentMeetsIsVisitedOnce) {
   EXPECT_GE(fewest, 1U);
   EXPECT_LT(most, triangles.size() / 4);  // it is a tree
   bool any = false;
-  tree.visit_along(Vec3d(9.0), Vec3d(10.0), [&](TreeSlot) { any = true; });
+  tree.visit_along(Vec3d(9.0), Vec3d(10.0), [&](TreeSlot) { return any = true; });
   EXPECT_FALSE(any);
 }
 

@@ -5,8 +5,7 @@
 shown() {
   awk '
     function plain(line) {
-      gsub(/[0-9]+\.[0-9]+ s \([0-9]+ triangles\/s\)/, "T", line)
-      gsub(/[0-9]+\.[0-9][0-9]  art\//, "T  art/", line)  # seconds in a table
+      gsub(/, [0-9]+\.[0-9]+ s$/, ", T", line)
       sub(/…$/, "", line)
       sub(/ +$/, "", line)
       return line

@@ -1,15 +1,31 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "judge/validate/edit.h"
 
+#include <algorithm>
 #include <optional>
 #include <span>
+#include <string>
+#include <utility>
 
+#include "app/rewrite/rewrite_asset.h"
 #include "judge/validate/file_tables.h"
 #include "judge/validate/page_rules.h"
 #include "judge/validate/rules.h"
 #include "support/reseal.h"
 
 namespace meshlode::test {
+
+AssetEdit::AssetEdit(std::vector<std::uint8_t> bytes) : bytes_(std::move(bytes)) {
+  const auto asset = run::Asset::from_bytes(bytes_);
+  if (!asset) return;
+  const bool is_packed = std::any_of(asset->sections().begin(), asset->sections().end(),
+                                     [](const format::SectionEntry& entry) { return entry.codec != 0; }) ||
+                         std::any_of(asset->pages().begin(), asset->pages().end(),
+                                     [](const format::PageRecord& page) { return page.codec != format::Codec::kNone; });
+  if (!is_packed) return;
+  auto plain = app::rewrite_asset(*asset, {format::Codec::kNone, std::string(asset->meta_json())});
+  if (plain) bytes_ = std::move(*plain);
+}
 
 std::uint64_t AssetEdit::section_entry_offset(format::SectionId id) const {
   const auto header = get<format::FileHeader>(0);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // An asset's bytes as records that a test may change, and sealed again so that only the meaning is broken: checksums
-// and the content hash are true afterwards. Pages must be stored plain.
+// and the content hash are true afterwards.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,8 @@ namespace meshlode::test {
 
 class AssetEdit {
  public:
-  explicit AssetEdit(std::vector<std::uint8_t> bytes) : bytes_(std::move(bytes)) {}
+  /// What a codec packed is stored plain first.
+  explicit AssetEdit(std::vector<std::uint8_t> bytes);
 
   [[nodiscard]] std::vector<std::uint8_t>& bytes() { return bytes_; }
   [[nodiscard]] const std::vector<std::uint8_t>& bytes() const { return bytes_; }
