@@ -20,7 +20,7 @@ compare() {
 }
 for scene in "$data"/*.glb; do compare "$(basename "$scene")" "$scene"; done
 compare "rock, best" "$data/rock.glb" --preset best --codec strips
-compare "rock, fast" "$data/rock.glb" --preset fast --codec zstd
+compare "rock, fast" "$data/rock.glb" --preset fast --codec strips
 compare "terrain, certified" "$data/terrain.glb" --error-tier certified
 compare "foliage, by coverage" "$data/foliage.glb" --aggregate auto
 echo "$compared assets are equal"

@@ -13,7 +13,7 @@ namespace {
 constexpr double kPromise = 0.4;
 /// One that lies over more source triangles is left to a search in bounds, which costs more: with 64, staircases of
 /// 17,000 triangles had cuts at 1.06 and 1.10 times what they stored.
-constexpr std::size_t kMostPieces = 1024;
+constexpr std::size_t kMostPiecesOfMade = 1024;
 
 }  // namespace
 
@@ -66,7 +66,7 @@ void LevelMeter::check_made(const LevelSurface& surface, Made& made, std::size_t
   BoundedSearch search(source, kTolerance, within);
   std::size_t searched = 0;
   const LinkedSurface linked{impl.positions, impl.triangles, source_neighbor_, {}, source, impl.place};
-  Overlay overlay(linked, kMostPieces);
+  Overlay overlay(linked, kMostPiecesOfMade);
   for (std::uint32_t i = 0; i < made.triangle_count; ++i) {
     const std::uint32_t k = made.first_triangle + i;
     if (!made.near[i].is_valid()) continue;

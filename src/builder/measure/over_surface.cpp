@@ -16,7 +16,7 @@ constexpr double kFlat = 0.4;
 /// And this cosine from parallel to them.
 constexpr float kFlatCosine = 0.9F;
 /// A source triangle that lies over more of the surface is left to a search in bounds.
-constexpr std::size_t kMostPieces = 48;
+constexpr std::size_t kMostPiecesOfUnit = 48;
 /// Parts of the search for a triangle of several groups, where those before it in its chunk left so many.
 constexpr std::size_t kPartsOfShared = 256;
 /// Parts of one chunk: stacks of sheets have thousands of triangles that lie over many others.
@@ -106,7 +106,7 @@ void LevelMeter::check_units(const LevelSurface& surface, UnitChunk& chunk, std:
   const SourceTree::Impl& source = source_.impl();
   const bool is_small = source.triangles.size() <= kFewSource;
   const LinkedSurface linked = surface.linked();
-  Overlay overlay(linked, kMostPieces);
+  Overlay overlay(linked, kMostPiecesOfUnit);
   BoundedSearch search(surface.tree, kTolerance, known(chunk.group).known);
   std::size_t searched = 0, left_to_shared = kPartsOfShared;
   for (std::size_t i = 0; i < chunk.first_near.size(); ++i) {
