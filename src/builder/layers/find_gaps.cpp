@@ -23,7 +23,7 @@ constexpr double kReach = 0.02;
 constexpr double kLeastGap = 2e-3;
 /// Rays: one pair for every square of so much of the diagonal, for every tenth triangle at least, and no more than
 /// these for one triangle. A mesh of large triangles has few of them.
-constexpr double kSpacing = 0.01, kFewest = 0.1, kMost = 4.0;
+constexpr double kSpacing = 0.01, kFewestRays = 0.1, kMostRays = 4.0;
 /// Of a mesh of many instances each ray looks around so many.
 constexpr std::size_t kPlaces = 2;
 
@@ -102,7 +102,7 @@ class GapFinder {
     const Caster caster = caster_of(shape, triangle);
     if (!(caster.area > 0.0)) return;
     SplitMix64 random(caster.hash);
-    const double due = std::clamp(caster.area / (kSpacing * kSpacing), kFewest, kMost) + random.unit();
+    const double due = std::clamp(caster.area / (kSpacing * kSpacing), kFewestRays, kMostRays) + random.unit();
     const bool is_asked = !gaps_[mesh].codes.empty();
     const std::size_t places = placed_.place_count(mesh);
     for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(due); ++i) {
