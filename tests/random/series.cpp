@@ -91,6 +91,7 @@ std::function<std::optional<std::uint64_t>()> up_to(std::uint64_t count, std::at
 TrialOptions trial_options(const Arguments& arguments, const fs::path& folder,
                            const std::vector<std::string>& build_options) {
   TrialOptions options{.program = arguments.program, .folder = folder, .build_options = build_options};
+  options.judges_seen_surfaces = arguments.harm == Harm::kLayers;
   options.cpu_seconds = arguments.cpu_seconds;
   options.depth = arguments.depth;
   options.samples = arguments.samples;

@@ -24,6 +24,8 @@ struct TrialOptions {
   std::filesystem::path folder;       ///< existing; what a trial writes there it removes
   std::vector<std::string> build_options;
   Depth depth = Depth::kAll;
+  /// V211 counts. Not in needles, soups and heaps: which of their surfaces is in front is chance even in the source.
+  bool judges_seen_surfaces = false;
   std::optional<std::uint64_t> samples{};  ///< verify's --samples; its own default without
   double cpu_seconds = 120.0;   ///< of processor time, each step; a hang that sleeps ends after four times that
   bool other_jobs_too = false;  ///< builds again with another number of threads: the bytes have to be the same (I10)
