@@ -157,15 +157,17 @@ void LevelMeter::measure_all_moved(const LevelSurface& surface, std::span<Moved>
 
 /// From the largest error down: what a group's error is when its turn comes is not raised any more.
 void LevelMeter::raise_by(std::span<const Moved> moved) {
-  std::vector<std::vector<const Moved*>> moved_to(end_ - first_);
-  for (const Moved& m : moved) moved_to[m.to - first_].push_back(&m);
+  std::vector<std::vector<const Moved*>> moved_to(dag_.groups.size());  // of the level, or of another
   std::priority_queue<std::pair<double, std::uint32_t>> open;
-  for (std::uint32_t g = first_; g < end_; ++g) open.emplace(dag_.groups[g].error, g);
+  for (const Moved& m : moved) {
+    if (moved_to[m.to].empty()) open.emplace(dag_.groups[m.to].error, m.to);
+    moved_to[m.to].push_back(&m);
+  }
   for (; !open.empty();) {
     const auto [limit, to] = open.top();
     open.pop();
     if (limit < dag_.groups[to].error) continue;  // it had its turn
-    for (const Moved* m : moved_to[to - first_]) {
+    for (const Moved* m : moved_to[to]) {
       double& error = dag_.groups[m->group].error;
       const double least = std::min(margin_ * m->distance, limit);
       if (!(least > error)) continue;
