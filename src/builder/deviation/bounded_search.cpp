@@ -124,7 +124,7 @@ void BoundedSearch::look_at(Part& part) {
 
 std::size_t BoundedSearch::run(std::size_t parts) {
   std::size_t made = 0;
-  for (; !is_done() && made + 2 <= parts; made += 2) {
+  while (!is_done() && made + 2 <= parts) {
     std::pop_heap(parts_.begin(), parts_.end());
     Part part = parts_.back();
     parts_.pop_back();
@@ -132,6 +132,7 @@ std::size_t BoundedSearch::run(std::size_t parts) {
       look_at(part);
       continue;
     }
+    made += 2;
     const auto [from, share] = choose_division(part);
     const std::size_t to = (from + 1) % 3;
     Corner middle{(1.0 - share) * part.corner[from].at + share * part.corner[to].at, part.corner[from].near};

@@ -82,9 +82,7 @@ void LevelMeter::measure_level(std::uint32_t first_group, std::uint32_t end_grou
   merge(chunks);
   surface.free_search();
   link_source();
-  const std::size_t parts_of_made = kPartsOfLevel + kPartsPerSource * source_.impl().tree.size();
-  parallel_for_each_index(made.size(), 1,
-                          [&](std::size_t i) { check_made(surface, made[i], parts_of_made / made.size()); });
+  parallel_for_each_index(made.size(), 1, [&](std::size_t i) { check_made(surface, made[i]); });
   merge(made);
   finish_groups(made);
   wait_for_others(surface, chunks);

@@ -111,7 +111,7 @@ class LevelMeter {
 
   // over_source.cpp: the surface against the source
   void ask_vertices(Made& made) const;
-  void check_made(const LevelSurface& surface, Made& made, std::size_t extra_parts) const;
+  void check_made(const LevelSurface& surface, Made& made) const;
   [[nodiscard]] bool is_plain(const LevelSurface& surface, std::uint32_t triangle, TreeSlot near) const;
 
   // moved.cpp
@@ -213,10 +213,6 @@ constexpr double kTolerance = 1.002;
 /// Parts that searches may make: for each triangle that needs one, and spread over all of a level. With four and fifty
 /// times as many no error of the dragon grows by more than 2%.
 constexpr std::size_t kPartsPerTriangle = 16, kPartsOfLevel = 4000;
-/// The same for each triangle of the source, spread over what a level made: one triangle of a coarse level may lie over
-/// a hundred steps of a staircase. With 1 the last cut of a sheared plane, 50,000 of its sizes away from the origin,
-/// so that floats make it stairs, is at 1.11 of its error; with 4, 1.00.
-constexpr std::size_t kPartsPerSource = 4;
 /// A source of at most so many triangles costs little, and is looked at without shortcuts.
 constexpr std::size_t kFewSource = 30000;
 
