@@ -276,7 +276,7 @@ int run_verify(const Verb& verb, std::span<char* const> args) {
 
 }  // namespace
 
-const Verb kVerifyVerb{"verify", "prove an asset against the scene it was built from",
+const Verb kVerifyVerb{"verify", "compare an asset with the scene it was built from",
                        "Checks that every source triangle is there, that no cut has a crack, that selection by "
                        "hierarchy and by the flat rule agree, and that cuts deviate from the source by no more than "
                        "the asset states. It shares no code with the builder.\n\n"
