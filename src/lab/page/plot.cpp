@@ -182,18 +182,18 @@ void draw_series(Markup& svg, const Frame& frame, const Series& series) {
   svg.close().line();
 }
 
-struct Box {
+struct Extent {
   double left = 0.0, top = 0.0, right = 0.0, bottom = 0.0;
 
-  [[nodiscard]] bool meets(const Box& other) const {
+  [[nodiscard]] bool meets(const Extent& other) const {
     return left < other.right && other.left < right && top < other.bottom && other.top < bottom;
   }
 };
 
 /// Of a marker with its spread.
-Box marks_of(const Frame& frame, const PlotPoint& point) {
+Extent marks_of(const Frame& frame, const PlotPoint& point) {
   const Place place = frame.at(point);
-  Box box{place.x - kMarker, place.y - kMarker, place.x + kMarker, place.y + kMarker};
+  Extent box{place.x - kMarker, place.y - kMarker, place.x + kMarker, place.y + kMarker};
   if (point.x_spread.high > point.x_spread.low) {
     box.left = std::min(box.left, frame.across(point.x_spread.low));
     box.right = std::max(box.right, frame.across(point.x_spread.high));
@@ -210,7 +210,7 @@ Box marks_of(const Frame& frame, const PlotPoint& point) {
 void draw_labels(Markup& svg, const Frame& frame, const std::vector<Series>& series) {
   constexpr double kAscent = 10.0, kDescent = 3.0, kGap = 4.0, kLongest = 160.0;
   std::vector<const PlotPoint*> points;
-  std::vector<Box> taken;
+  std::vector<Extent> taken;
   for (const Series& one : series) {
     for (const PlotPoint& point : one.points) {
       if (!is_shown(point) || point.label.empty()) continue;
@@ -220,7 +220,7 @@ void draw_labels(Markup& svg, const Frame& frame, const std::vector<Series>& ser
   }
   for (const PlotPoint* point : points) {
     const Place place = frame.at(*point);
-    const Box marks = marks_of(frame, *point);
+    const Extent marks = marks_of(frame, *point);
     const double width = text_width(point->label), middle = place.x - width / 2.0, beside = place.y + 4.0;
     if (width > kLongest) continue;
     const Place tried[] = {{marks.right + kGap, beside},
@@ -228,10 +228,11 @@ void draw_labels(Markup& svg, const Frame& frame, const std::vector<Series>& ser
                            {middle, marks.top - kGap - kDescent},
                            {middle, marks.bottom + kGap + kAscent}};
     for (const Place& base : tried) {
-      const Box box{base.x, base.y - kAscent, base.x + width, base.y + kDescent};
+      const Extent box{base.x, base.y - kAscent, base.x + width, base.y + kDescent};
       const bool is_inside =
           box.left >= kLeft && box.right <= kWidth && box.top >= 0.0 && box.bottom <= kTop + kPlotHeight;
-      const bool is_free = std::none_of(taken.begin(), taken.end(), [&](const Box& other) { return box.meets(other); });
+      const bool is_free =
+          std::none_of(taken.begin(), taken.end(), [&](const Extent& other) { return box.meets(other); });
       if (!is_inside || !is_free) continue;
       taken.push_back(box);
       draw_text(svg, "tick", base.x, base.y, point->label);

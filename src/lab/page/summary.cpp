@@ -71,7 +71,8 @@ void write_card(Markup& html, const ReportData& data, const Card& card) {
 std::vector<Card> choose_cards(const ReportData& data) {
   std::vector<const Point*> points;
   for (const Point& point : data.points) {
-    const bool is_drawn_otherwise = std::find(point.changed.begin(), point.changed.end(), "pixel_error") != point.changed.end();
+    const bool is_drawn_otherwise =
+        std::find(point.changed.begin(), point.changed.end(), "pixel_error") != point.changed.end();
     if (!point.is_experimental && !point.error && !is_drawn_otherwise) points.push_back(&point);
   }
   struct Goal {

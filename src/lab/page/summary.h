@@ -18,8 +18,9 @@ struct Card {
   std::vector<std::string> as_good;  ///< labels of points that the measurements do not distinguish from it
 };
 
-/// Of the points that were measured and that settings of a build alone make, experiments left out. Where ranges of a timed figure overlap, or figures differ by
-/// less than a thousandth, the point that changes fewest settings is taken. Empty where nothing was measured.
+/// Of the points that were measured and that settings of a build alone make, experiments left out. Where ranges of a
+/// timed figure overlap, or figures differ by less than a thousandth, the point that changes fewest settings is taken.
+/// Empty where nothing was measured.
 [[nodiscard]] std::vector<Card> choose_cards(const ReportData& data);
 
 /// The first chart of accuracy and the cards.
