@@ -205,8 +205,8 @@ Extent marks_of(const Frame& frame, const PlotPoint& point) {
   return box;
 }
 
-/// Right of its marker, left of it, above or below: the first place where a label meets neither marks nor labels nor
-/// the border. One without such a place is left out; its marker has a title.
+/// Right of its marker, left of it, above, below, or right and left a little higher: the first place where a label
+/// meets neither marks nor labels nor the border. One without such a place is left out; its marker has a title.
 void draw_labels(Markup& svg, const Frame& frame, const std::vector<Series>& series) {
   constexpr double kAscent = 10.0, kDescent = 3.0, kGap = 4.0, kLongest = 160.0;
   std::vector<const PlotPoint*> points;
@@ -223,10 +223,9 @@ void draw_labels(Markup& svg, const Frame& frame, const std::vector<Series>& ser
     const Extent marks = marks_of(frame, *point);
     const double width = text_width(point->label), middle = place.x - width / 2.0, beside = place.y + 4.0;
     if (width > kLongest) continue;
-    const Place tried[] = {{marks.right + kGap, beside},
-                           {marks.left - kGap - width, beside},
-                           {middle, marks.top - kGap - kDescent},
-                           {middle, marks.bottom + kGap + kAscent}};
+    const Place tried[] = {{marks.right + kGap, beside},          {marks.left - kGap - width, beside},
+                           {middle, marks.top - kGap - kDescent}, {middle, marks.bottom + kGap + kAscent},
+                           {marks.right + kGap, place.y - kGap},  {marks.left - kGap - width, place.y - kGap}};
     for (const Place& base : tried) {
       const Extent box{base.x, base.y - kAscent, base.x + width, base.y + kDescent};
       const bool is_inside =
