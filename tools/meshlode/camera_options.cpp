@@ -123,7 +123,7 @@ void add_camera_options(OptionParser& parser, CameraOptions& options) {
   parser.add_value("--ortho HEIGHT", options.ortho_height,
                    "orthographic camera; HEIGHT of the picture in world units (default: perspective)");
   parser.add_value("--size WxH", options.size, "size of the picture in pixels, each 1 to 16384");
-  parser.add_value("--pixel-error T", options.pixel_error, "allowed error on the screen in pixels, 0 or more");
+  add_pixel_error_option(parser, options.pixel_error);
 }
 
 run::Camera frame_scene(const run::Asset& asset, std::uint32_t width, std::uint32_t height) {

@@ -26,6 +26,10 @@ constexpr const char* kInput = "Input";
 constexpr const char* kAdvanced = "Advanced";
 
 constexpr std::array<SettingInfo, kSettingCount> kSettings{{
+    {Setting::kFor, "for", "", kQuality,
+     "options by use: web, the smallest download; engine, pages that are mapped; archive, the most accurate; options "
+     "that are given win",
+     "any", false},
     {Setting::kErrorTier, "error-tier", "", kQuality,
      "what the stored errors are: estimated (qem), sampled (measured) or proven (certified); auto: the preset's",
      "auto", true},
@@ -76,6 +80,20 @@ constexpr std::array<SettingInfo, kSettingCount> kSettings{{
      "keep surfaces that lie close above one another in order in coarse cuts; off: gaps are not looked for", "on",
      false},
 }};
+
+struct UseWord {
+  const char* use;
+  Setting setting;
+  const char* word;
+};
+// Measured in docs/guides/choosing-settings.md.
+constexpr UseWord kUseWords[] = {
+    {"web", Setting::kStripEffort, "best"},     {"web", Setting::kNormalError, "0.5"},
+    {"web", Setting::kUvError, "0.25px"},       {"engine", Setting::kCodec, "none"},
+    {"archive", Setting::kPreset, "best"},      {"archive", Setting::kErrorTier, "certified"},
+    {"archive", Setting::kNormalError, "0.02"},
+};
+constexpr std::array<const char*, 4> kUses{"any", "web", "engine", "archive"};
 
 /// A finite number above 0, all of the text.
 std::optional<double> parse_positive(std::string_view text) {
@@ -156,8 +174,14 @@ std::string join(const std::vector<std::string>& names) {
 /// The words of all layers so far.
 class Settling {
  public:
-  Settling() {
+  /// The defaults, and over them what the last `for` of these layers means.
+  explicit Settling(std::span<const SettingLayer> layers = {}) {
     for (const SettingInfo& info : kSettings) words_[index_of(info.setting)] = {info.usual, "default"};
+    std::string use;
+    for (const SettingLayer& layer : layers) use = layer.words[index_of(Setting::kFor)].value_or(use);
+    for (const UseWord& word : kUseWords) {
+      if (use == word.use) words_[index_of(word.setting)] = {word.word, "for " + use};
+    }
   }
 
   Status add(const Saying& saying) {
@@ -270,6 +294,7 @@ bool is_flag(Setting setting) {
 
 std::vector<std::string> choices_of(Setting setting) {
   switch (setting) {
+    case Setting::kFor: return {kUses.begin(), kUses.end()};
     case Setting::kErrorTier: {
       std::vector<std::string> names = all_names(format::kErrorTierNames);
       names.insert(names.begin(), "auto");
@@ -322,8 +347,19 @@ std::string find_fault(Setting setting, std::string_view word) {
   }
 }
 
+std::string describe_use(const Settled& settled) {
+  const std::string& use = settled[Setting::kFor].word;
+  if (use == info_of(Setting::kFor).usual) return {};
+  std::string text;
+  for (const SettingInfo& info : kSettings) {
+    const SettledWord& word = settled[info.setting];
+    if (word.from == "for " + use) text += (text.empty() ? ": " : ", ") + std::string(info.name) + " " + word.word;
+  }
+  return "for " + use + (text.empty() ? ": every setting is given" : text);
+}
+
 Result<Settled> settle(std::span<const SettingLayer> layers) {
-  Settling settling;
+  Settling settling(layers);
   for (const SettingLayer& layer : layers) {
     TRY(settling.add(saying_of(layer)));
     for (const SettingLayer::MeshRule& rule : layer.mesh_rules) {
@@ -342,7 +378,7 @@ Result<std::vector<SettledMesh>> settle_meshes(std::span<const SettingLayer> lay
   bool is_any = false;
   std::vector<SettledMesh> out;
   for (std::size_t i = 0; has_rules && i < mesh_names.size(); ++i) {
-    Settling settling;
+    Settling settling(layers);
     for (const SettingLayer& layer : layers) {
       TRY(settling.add(saying_of(layer)));
       for (const SettingLayer::MeshRule& rule : layer.mesh_rules) {

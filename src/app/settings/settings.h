@@ -21,6 +21,7 @@ namespace meshlode::app {
 
 /// Everything that changes the bytes of an asset. The order is that of the help.
 enum class Setting : std::uint8_t {
+  kFor,
   kErrorTier,
   kPreset,
   kAttributes,
@@ -42,7 +43,7 @@ enum class Setting : std::uint8_t {
   kPromise,
   kKeepLayers,
 };
-constexpr std::size_t kSettingCount = 20;
+constexpr std::size_t kSettingCount = 21;
 
 struct SettingInfo {
   Setting setting;
@@ -96,7 +97,11 @@ struct Settled {
   }
 };
 
-/// All layers together, for the scene as a whole. Errors: a layer's code, with its place, for a word that is none and
+/// What the setting `for` decided, in a line: "for engine: codec none"; empty where it says `any`.
+[[nodiscard]] std::string describe_use(const Settled& settled);
+
+/// All layers together, for the scene as a whole. What the last `for` of the layers means lies below every word that is
+/// given. Errors: a layer's code, with its place, for a word that is none and
 /// for two that exclude each other in one layer (a grid and a position error, a name kept and dropped); across layers
 /// the later one wins. A layer that says `attributes` does away with the names of earlier ones.
 [[nodiscard]] Result<Settled> settle(std::span<const SettingLayer> layers);

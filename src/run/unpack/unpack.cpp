@@ -55,8 +55,8 @@ Result<PageBytes> load_page(const Asset& asset, PageId page) {
     return page_error(
         page, "codec",
         std::string("is ") + format::name_of(record.codec) +
-            ", which nothing writes since version 0.2 and this build does not read: build the asset again, "
-            "or store it anew by `meshlode repack --codec strips` of a build with MESHLODE_OLD_CODECS=ON",
+            ", which is no longer written and which this build does not read: build the asset again, "
+            "or repack it (`meshlode repack --codec strips`) with a build that has MESHLODE_OLD_CODECS=ON",
         ErrorCode::kUnsupported);
   }
   if (outcome == UnpackOutcome::kBroken) return page_error(page, "codec", "the stored bytes do not unpack");
