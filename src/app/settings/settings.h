@@ -41,8 +41,11 @@ enum class Setting : std::uint8_t {
   kAggregate,
   kPromise,
   kKeepLayers,
+  kPageSize,
+  kPageOrder,
+  kRootBytes,
 };
-constexpr std::size_t kSettingCount = 20;
+constexpr std::size_t kSettingCount = 23;
 
 struct SettingInfo {
   Setting setting;
