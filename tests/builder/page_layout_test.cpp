@@ -151,7 +151,8 @@ TEST(PageLayout, SmallPagesLoadLess) {
   scene.meshes[0].primitives[0].material = MaterialId(0U);
   PipelineOptions small;
   small.page_kib = 32;
-  const auto usual = build_pages(scene), level = build_pages(scene, small), order = build_pages(scene, covisible(32, 0));
+  const auto usual = build_pages(scene), level = build_pages(scene, small),
+             order = build_pages(scene, covisible(32, 0));
   const auto a = run::Asset::from_bytes(usual), b = run::Asset::from_bytes(level), c = run::Asset::from_bytes(order);
   ASSERT_TRUE(a && b && c);
   const double of_usual = mean_needed_bytes(*a), of_level = mean_needed_bytes(*b), of_order = mean_needed_bytes(*c);

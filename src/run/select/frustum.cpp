@@ -22,7 +22,8 @@ Frustum make_frustum(const FrustumShape& shape) {
   const auto add = [&](const Vec3d& normal, double offset) {
     out.planes[count++] = {normal.x, normal.y, normal.z, offset - glm::dot(normal, shape.eye)};
   };
-  for (const auto& [axis, half] : {std::pair{right, shape.half_height * shape.aspect}, std::pair{up, shape.half_height}}) {
+  for (const auto& [axis, half] :
+       {std::pair{right, shape.half_height * shape.aspect}, std::pair{up, shape.half_height}}) {
     for (const double side : {-1.0, 1.0}) {
       if (shape.is_orthographic) {
         add(axis * side, half);

@@ -89,7 +89,8 @@ std::vector<bool> reached_of(const TestTables& tables, const MetricView& view, c
   return reached;
 }
 
-std::vector<ClusterInstance> cut_of(const TestTables& tables, std::uint32_t instance, const std::vector<bool>& reached) {
+std::vector<ClusterInstance> cut_of(const TestTables& tables, std::uint32_t instance,
+                                    const std::vector<bool>& reached) {
   std::vector<ClusterInstance> out;
   const format::MeshRecord& mesh = tables.meshes[tables.instances[instance].mesh];
   for (std::uint32_t c = mesh.first_cluster; c < mesh.first_cluster + mesh.cluster_count; ++c) {
@@ -159,7 +160,8 @@ TEST(Resident, DrawsWhatTheWordsOfTheRuleSay) {
         const auto cut = cut_of(owned, i, reached_of(owned, view, mesh, residency));
         expected.insert(expected.end(), cut.begin(), cut.end());
       }
-      ASSERT_EQ(copy_of(select(tables, {camera, t, residency.words, nullptr})), expected) << "scene " << scene << ", " << n;
+      ASSERT_EQ(copy_of(select(tables, {camera, t, residency.words, nullptr})), expected)
+          << "scene " << scene << ", " << n;
     }
   }
 }
@@ -229,9 +231,12 @@ TEST(Resident, CoversEveryPathOnceWhateverIsThere) {
           ASSERT_FALSE(drawn[c] != 0 && own != format::kNone && fails(view, one.groups[own]) && !lacks[own]) << c;
         }
         for (std::uint32_t c = 0; c < drawn.size(); ++c) {
-          const auto is_open = [&](std::uint32_t g) { return fails(view, one.groups[g]) && residency.has(one.groups[g].page); };
+          const auto is_open = [&](std::uint32_t g) {
+            return fails(view, one.groups[g]) && residency.has(one.groups[g].page);
+          };
           const format::ClusterRecord& cluster = one.clusters[c];
-          drawn[c] = is_open(cluster.coarser_group) && (cluster.own_group == format::kNone || !is_open(cluster.own_group));
+          drawn[c] =
+              is_open(cluster.coarser_group) && (cluster.own_group == format::kNone || !is_open(cluster.own_group));
         }
         const Coverage naive = coverage_of(one, mesh, drawn);
         naive_open += naive.least == 1 && naive.most == 1 ? 0 : 1;
@@ -285,7 +290,8 @@ TEST(Resident, AFrustumTakesAwayWhatIsOutsideAndNothingElse) {
         if (!is_sphere_outside(frustum, instance, mesh, sphere)) expected.push_back(item);
       }
       inside_count += expected.size();
-      ASSERT_EQ(copy_of(select(tables, {camera, t, residency.words, &frustum})), expected) << "scene " << scene << ", " << n;
+      ASSERT_EQ(copy_of(select(tables, {camera, t, residency.words, &frustum})), expected)
+          << "scene " << scene << ", " << n;
     }
   }
   EXPECT_GT(inside_count, all_count / 100);
