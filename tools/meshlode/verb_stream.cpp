@@ -45,8 +45,10 @@ constexpr std::size_t kMostTextBytes = std::size_t{64} << 20U;
 Result<std::string> read_text_file(const char* option, const std::string& path) {
   TRY_LET(file, MappedFile::open(path));
   output_files().keep(file->id());
-  if (file->bytes().size() > kMostTextBytes) return Error{ErrorCode::kInvalid, path, "a file of text has at most 64MiB"};
-  if (file->bytes().empty()) return Error{ErrorCode::kInvalid, path, std::string("the file of ") + option + " is empty"};
+  if (file->bytes().size() > kMostTextBytes)
+    return Error{ErrorCode::kInvalid, path, "a file of text has at most 64MiB"};
+  if (file->bytes().empty())
+    return Error{ErrorCode::kInvalid, path, std::string("the file of ") + option + " is empty"};
   return std::string(file->bytes().begin(), file->bytes().end());
 }
 
@@ -82,8 +84,8 @@ Result<std::vector<double>> parse_amounts(const char* option, const std::string&
                                           const char* wanted) {
   const auto numbers = parse_numbers(text);
   const bool is_sound = numbers && !numbers->empty() && std::all_of(numbers->begin(), numbers->end(), [&](double x) {
-    return x >= least && x <= most;
-  });
+                          return x >= least && x <= most;
+                        });
   if (!is_sound) return Error{ErrorCode::kUsage, option, std::string("expected ") + wanted + got_text(text)};
   return *numbers;
 }
@@ -158,14 +160,16 @@ void add_options(OptionParser& parser, StreamWords& words) {
   parser.add_value("--scene FILE", words.scene,
                    "lines 'asset x y z yaw scale' that place the assets; yaw in degrees (default: each once)");
   parser.add_value("--builtin", words.builtin, "path through the scene", all_names(app::kBuiltinPathNames));
-  parser.add_value("--path FILE", words.path,
-                   "path as lines 't,ex,ey,ez,tx,ty,tz[,fovy][,cut]': seconds, eye, target, degrees (default: --builtin)");
+  parser.add_value(
+      "--path FILE", words.path,
+      "path as lines 't,ex,ey,ez,tx,ty,tz[,fovy][,cut]': seconds, eye, target, degrees (default: --builtin)");
   parser.add_value("--size WxH", words.size, "size of the picture in pixels, each 1 to 16384");
   parser.add_value("--pixel-error T", words.pixel_error, "allowed error on the screen in pixels, 0.001 to 1000000");
   parser.add_value("--fps N", words.fps, "frames a second, 1 to 1000");
   parser.group("Streaming");
-  parser.add_value("--pool LIST", words.pool,
-                   "room for decoded pages: all, megabytes (10^6 bytes), or a share of all pages as 1/4; comma-separated");
+  parser.add_value(
+      "--pool LIST", words.pool,
+      "room for decoded pages: all, megabytes (10^6 bytes), or a share of all pages as 1/4; comma-separated");
   parser.add_value("--bandwidth LIST", words.bandwidth, "of the link, in megabytes a second; comma-separated");
   parser.add_value("--latency LIST", words.latency, "of a request, in milliseconds; comma-separated");
   parser.add_flag("--check", words.is_checked,
@@ -211,9 +215,9 @@ Result<int> stream(const StreamWords& words) {
   JobLimit limit(words.jobs);
   app::Simulation simulation;
   limit.run([&] { simulation = app::simulate(*scene, *path, *view, *specs, words.is_checked); });
-  const app::StreamReport report{words.assets, words.path.value_or(words.builtin), *scene,     *path,
-                                 *view,        *specs,                             simulation, words.is_checked,
-                                 words.has_log};
+  const app::StreamReport report{
+      words.assets, words.path.value_or(words.builtin), *scene, *path, *view, *specs, simulation, words.is_checked,
+      words.has_log};
   if (words.plot) TRY(write_text(*words.plot, stream_plot(report)));
   const std::string text = words.output.json() ? app::stream_json(report) : app::stream_text(report);
   const bool has_findings = app::count_findings(simulation) > 0;
@@ -237,13 +241,13 @@ int run_stream_verb(const Verb& verb, std::span<char* const> args) {
 }  // namespace
 
 const Verb kStreamVerb{
-    "stream", "simulate streaming along a camera's path: pool, link, load, error shown",
+    "stream", "simulate streaming: pool, link, load, error shown",
     "A camera moves through one or more assets. Pages arrive over a link into a pool, and each frame draws the finest "
     "closed cut of the pages that are there. Printed are the working set, the share of it that is drawn, the load, how "
     "long after a jump the picture is as fine as asked, and the error shown, for each pool and link.\n\n"
     "The rules of selection decide, without a renderer. Hidden surfaces count as seen.",
     "meshlode stream scene.lode\n"
-    "  meshlode stream tree.lode rock.lode --scene forest.txt --path walk.csv --pool 64,128 --bandwidth 50\n"
+    "  meshlode stream tree.lode rock.lode --scene forest.txt --path walk.csv --pool 64,128\n"
     "  meshlode stream scene.lode --builtin teleport --check --format json",
     run_stream_verb};
 

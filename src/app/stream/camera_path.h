@@ -36,9 +36,10 @@ struct PathFrame {
 constexpr double kUsualFovyDegrees = 60.0;
 constexpr std::uint32_t kMostFrames = 100000;
 
-/// Rows `t,ex,ey,ez,tx,ty,tz[,fovy][,cut]`: seconds, eye and target in world units, the vertical field of view in degrees
-/// (60 where it is left out). A first line that begins with t is a heading. `where` names the text in errors, with the
-/// line: kInvalid for what is no such row, times that do not grow, an eye in its target, and more than kMostFrames rows.
+/// Rows `t,ex,ey,ez,tx,ty,tz[,fovy][,cut]`: seconds, eye and target in world units, the vertical field of view in
+/// degrees (60 where it is left out). A first line that begins with t is a heading. `where` names the text in errors,
+/// with the line: kInvalid for what is no such row, times that do not grow, an eye in its target, and more than
+/// kMostFrames rows.
 [[nodiscard]] Result<std::vector<PathRow>> parse_path(std::string_view text, const std::string& where);
 
 /// Frames at i / fps seconds, i = 0, 1, …, up to the last row. Error: kInvalid where there are more than kMostFrames.

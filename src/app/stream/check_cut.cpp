@@ -18,10 +18,7 @@ std::string name_cluster(std::uint32_t instance, std::uint32_t cluster) {
 }  // namespace
 
 CutCheck::CutCheck(const StreamScene& scene)
-    : scene_(scene),
-      is_drawn_(scene.clusters.size()),
-      above_(scene.groups.size()),
-      is_blocked_(scene.groups.size()) {}
+    : scene_(scene), is_drawn_(scene.clusters.size()), above_(scene.groups.size()), is_blocked_(scene.groups.size()) {}
 
 /// From coarse to fine. Paths come to a group through the clusters made from it, and each must bring the same count.
 std::optional<std::string> CutCheck::check_paths(const format::MeshRecord& mesh, std::uint32_t instance) {
@@ -39,7 +36,8 @@ std::optional<std::string> CutCheck::check_paths(const format::MeshRecord& mesh,
     }
     std::uint8_t& handed_on = above_[cluster.own_group];
     if (handed_on != kUnknownAbove && handed_on != count) {
-      return "the cut is open at group " + std::to_string(cluster.own_group) + " of instance " + std::to_string(instance);
+      return "the cut is open at group " + std::to_string(cluster.own_group) + " of instance " +
+             std::to_string(instance);
     }
     handed_on = count;
   }
@@ -67,8 +65,8 @@ std::optional<std::string> CutCheck::find_fault(const run::Camera& camera, doubl
       if (!own.empty()) return "instance " + std::to_string(i) + " cannot be drawn";
       continue;
     }
-    const run::MetricView view = run::make_metric_view(camera, pixel_error, instance, mesh,
-                                                       run::mesh_reach(scene_.tables(), mesh));
+    const run::MetricView view =
+        run::make_metric_view(camera, pixel_error, instance, mesh, run::mesh_reach(scene_.tables(), mesh));
     for (const run::ClusterInstance& item : own) {
       const std::uint32_t c = item.cluster.value;
       const format::ClusterRecord& cluster = scene_.clusters[c];

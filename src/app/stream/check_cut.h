@@ -19,9 +19,9 @@ class CutCheck {
   explicit CutCheck(const StreamScene& scene);
 
   /// What is wrong with `items`, which are ascending and not culled; nothing where all holds:
-  /// every drawn cluster's page is resident; on every path from level 0 to a root exactly one cluster is drawn; no drawn
-  /// cluster could be replaced by finer ones: a page of its own group or of one above that is missing, or it passes.
-  /// \param is_resident  per page
+  /// every drawn cluster's page is resident; on every path from level 0 to a root exactly one cluster is drawn; no
+  /// drawn cluster could be replaced by finer ones: a page of its own group or of one above that is missing, or it
+  /// passes. \param is_resident  per page
   [[nodiscard]] std::optional<std::string> find_fault(const run::Camera& camera, double pixel_error,
                                                       std::span<const std::uint8_t> is_resident,
                                                       std::span<const run::ClusterInstance> items);

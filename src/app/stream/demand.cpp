@@ -18,7 +18,8 @@ struct FrameDemand {
 /// The bytes of all clusters of each group.
 std::vector<std::uint64_t> bytes_of_groups(const StreamScene& scene) {
   std::vector<std::uint64_t> bytes(scene.groups.size());
-  for (std::size_t c = 0; c < scene.clusters.size(); ++c) bytes[scene.clusters[c].coarser_group] += scene.cluster_bytes[c];
+  for (std::size_t c = 0; c < scene.clusters.size(); ++c)
+    bytes[scene.clusters[c].coarser_group] += scene.cluster_bytes[c];
   return bytes;
 }
 

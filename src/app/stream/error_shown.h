@@ -13,7 +13,7 @@
 namespace meshlode::app {
 
 struct ErrorShown {
-  double max_px = 0.0, p95_px = 0.0, p99_px = 0.0;      ///< by area, over all frames
+  double max_px = 0.0, p95_px = 0.0, p99_px = 0.0;           ///< by area, over all frames
   double share_over_asked = 0.0, share_over_fourfold = 0.0;  ///< of the area
 };
 

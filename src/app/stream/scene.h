@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is streamed: the tables of several assets as one set of tables, placed in one world. Pages keep nothing but their
-// sizes.
+// What is streamed: the tables of several assets as one set of tables, placed in one world. Pages keep nothing but
+// their sizes.
 #pragma once
 
 #include <cstdint>

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A camera moves, pages arrive over a link into a pool of fixed size, and each frame draws the finest closed cut of what
-// is there (run/select/resident.h). What that takes and what it shows, without a renderer.
+// A camera moves, pages arrive over a link into a pool of fixed size, and each frame draws the finest closed cut of
+// what is there (run/select/resident.h). What that takes and what it shows, without a renderer.
 //
 // Per frame, in this order: pages that have arrived become resident; the cut is chosen, its error is measured; pages
 // are requested, those first without which most is lost. A request is sent where the link is free before the next
 // frame begins and the pool has room, or has a page that is worth less: pages make place by falling worth, of equal
-// worth the longest unused first, then by falling id. The link sends one page after the other; a page arrives its latency
-// after its last byte. Pages of terminal groups are there from the start and stay. Times are whole microseconds.
+// worth the longest unused first, then by falling id. The link sends one page after the other; a page arrives its
+// latency after its last byte. Pages of terminal groups are there from the start and stay. Times are whole
+// microseconds.
 //
 // The selection's rules alone are used. There is no occlusion: what lies behind something is loaded and drawn.
 #pragma once
@@ -41,13 +42,13 @@ struct RunSpec {
 
 /// What the frames need, whatever pool and link there are: with all pages resident.
 struct Demand {
-  double mean_bytes = 0.0, mean_pages = 0.0;    ///< decoded, of pages that a frame needs
+  double mean_bytes = 0.0, mean_pages = 0.0;  ///< decoded, of pages that a frame needs
   std::uint64_t max_bytes = 0, max_pages = 0;
   std::uint64_t union_bytes = 0, union_pages = 0;  ///< of the whole path
-  double drawn_share = 0.0;                     ///< bytes of drawn clusters over those of needed pages, of all frames
-  double whole_group_share = 0.0;               ///< the same if each group were a page
+  double drawn_share = 0.0;                      ///< bytes of drawn clusters over those of needed pages, of all frames
+  double whole_group_share = 0.0;                ///< the same if each group were a page
   std::uint64_t root_bytes = 0, root_pages = 0;  ///< what is always there
-  ErrorShown root_error;                        ///< of the path with these pages alone
+  ErrorShown root_error;                         ///< of the path with these pages alone
 };
 
 /// How long after a jump no more than an error was shown.
@@ -68,19 +69,19 @@ struct RunResult {
   double mean_megabytes = 0.0, mean_requests = 0.0;           ///< a second
   std::uint64_t worst_bytes = 0, worst_requests = 0;          ///< the worst second that begins at a whole one
   std::uint64_t peak_pool_bytes = 0;
-  Recovery asked, fourfold;                 ///< until the pixel error, and four times as much, is shown
+  Recovery asked, fourfold;  ///< until the pixel error, and four times as much, is shown
   ErrorShown error;
-  std::vector<float> max_px;                ///< of each frame
+  std::vector<float> max_px;                 ///< of each frame
   std::vector<std::uint32_t> missing_pages;  ///< of each frame, after what had arrived
   std::vector<Transfer> log;
-  std::vector<std::string> findings;        ///< of the checks, at most 20
+  std::vector<std::string> findings;  ///< of the checks, at most 20
   std::uint64_t finding_count = 0, checked_frames = 0;
 };
 
 struct Simulation {
   Demand demand;
-  std::vector<RunResult> runs;              ///< as the specs
-  std::vector<std::string> findings;        ///< of the frames with all pages resident
+  std::vector<RunResult> runs;        ///< as the specs
+  std::vector<std::string> findings;  ///< of the frames with all pages resident
   std::uint64_t finding_count = 0;
 };
 

@@ -32,7 +32,7 @@ std::string recovery_text(const Recovery& recovery) {
 
 void add_run(std::string& out, const RunSpec& spec, const RunResult& run) {
   const std::string pool = spec.pool_bytes ? short_number(to_mb(*spec.pool_bytes)) : "all";
-  append_format(out, "%8s %6s %4s", pool.c_str(), number("%.4g", spec.link.megabytes_per_second).c_str(),
+  append_format(out, "%7s %5s %4s", pool.c_str(), number("%.4g", spec.link.megabytes_per_second).c_str(),
                 number("%.4g", spec.link.latency_ms).c_str());
   if (!run.fits) {
     out += "  no room for what is always there\n";
@@ -72,23 +72,23 @@ std::string stream_text(const StreamReport& report) {
   std::size_t jumps = 0;
   for (const PathFrame& frame : report.frames) jumps += frame.is_jump ? 1 : 0;
   out += report.path;
-  append_format(out, ": %zu frames, %zu starts and jumps\n", report.frames.size(), jumps);
-  append_format(out, "picture        %ux%u at %.4g px, %u frames a second\n", report.view.width, report.view.height, asked,
-                report.view.fps);
-  append_format(out, "working set    %.2f MB a frame, at most %.2f MB (%.1f%% of all); %.1f and %llu pages\n",
-                to_mb(demand.mean_bytes), to_mb(demand.max_bytes), 100.0 * static_cast<double>(demand.max_bytes) / all,
-                demand.mean_pages, static_cast<unsigned long long>(demand.max_pages));
-  append_format(out, "of the path    %.2f MB in %llu pages\n", to_mb(demand.union_bytes),
-                static_cast<unsigned long long>(demand.union_pages));
+  append_format(out, ": %zu frames, %zu cuts\n", report.frames.size(), jumps - 1);
+  append_format(out, "picture        %ux%u at %.4g px, %u frames a second\n", report.view.width, report.view.height,
+                asked, report.view.fps);
+  append_format(out, "working set    %.2f MB a frame, at most %.2f MB (%.1f%% of all)\n", to_mb(demand.mean_bytes),
+                to_mb(demand.max_bytes), 100.0 * static_cast<double>(demand.max_bytes) / all);
+  append_format(out, "               %.1f pages a frame, at most %llu; %llu of the path, %.2f MB\n", demand.mean_pages,
+                static_cast<unsigned long long>(demand.max_pages), static_cast<unsigned long long>(demand.union_pages),
+                to_mb(demand.union_bytes));
   append_format(out, "drawn share    %.1f%% of what a frame needs; %.1f%% if groups were loaded alone\n",
                 100.0 * demand.drawn_share, 100.0 * demand.whole_group_share);
   append_format(out, "always there   %.2f MB in %llu pages; alone they show %s px at most\n", to_mb(demand.root_bytes),
                 static_cast<unsigned long long>(demand.root_pages), short_number(demand.root_error.max_px).c_str());
   if (!report.specs.empty()) {
-    out += "\n            link        load              until px     shown\n";
     const std::string one = number("%.3g", asked), four = number("%.3g", 4.0 * asked);
-    append_format(out, "%8s %6s %4s %6s %6s %6s %6s %6s %6s %5s %6s %6s\n", "pool MB", "MB/s", "ms", "MB/s", "req/s",
-                  "worst", (one + " ms").c_str(), (four + " ms").c_str(), "max px", "p99", (">" + one).c_str(),
+    out += "\n          link        load             ms until       shown, px and area\n";
+    append_format(out, "%7s %5s %4s %6s %6s %6s %6s %6s %6s %5s %6s %6s\n", "pool MB", "MB/s", "ms", "MB/s", "req/s",
+                  "worst", (one + " px").c_str(), (four + " px").c_str(), "max", "p99", (">" + one).c_str(),
                   (">" + four).c_str());
   }
   for (std::size_t i = 0; i < report.specs.size(); ++i) add_run(out, report.specs[i], report.simulation.runs[i]);
