@@ -214,7 +214,7 @@ Result<int> stream(const StreamWords& words) {
   TRY(claim_outputs(words));
   JobLimit limit(words.jobs);
   app::Simulation simulation;
-  limit.run([&] { simulation = app::simulate(*scene, *path, *view, *specs, words.is_checked); });
+  limit.run([&] { simulation = app::simulate(*scene, *path, *view, *specs, {words.is_checked, words.has_log}); });
   const app::StreamReport report{
       words.assets, words.path.value_or(words.builtin), *scene, *path, *view, *specs, simulation, words.is_checked,
       words.has_log};

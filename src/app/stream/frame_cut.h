@@ -68,7 +68,7 @@ class FrameCut {
 [[nodiscard]] Demand measure_demand(const StreamScene& scene, std::span<const PathFrame> path, const StreamView& view,
                                     bool checks, std::vector<std::string>& findings, std::uint64_t& finding_count);
 [[nodiscard]] RunResult run_stream(const StreamScene& scene, std::span<const PathFrame> path, const StreamView& view,
-                                   const RunSpec& spec, bool checks);
+                                   const RunSpec& spec, const Watch& watch);
 
 /// Counts all, keeps the first ones.
 inline void add_finding(std::string text, std::vector<std::string>& findings, std::uint64_t& count) {

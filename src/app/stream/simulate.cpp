@@ -135,6 +135,17 @@ class Pool {
   std::int64_t link_free_us_ = 0;
 };
 
+std::vector<std::uint32_t> pages_of(const StreamScene& scene, std::span<const run::ClusterInstance> items) {
+  std::vector<std::uint32_t> pages;
+  for (const run::ClusterInstance& item : items) {
+    const std::uint32_t page = scene.groups[scene.clusters[item.cluster.value].coarser_group].page;
+    if (pages.empty() || pages.back() != page) pages.push_back(page);
+  }
+  std::sort(pages.begin(), pages.end());
+  pages.erase(std::unique(pages.begin(), pages.end()), pages.end());
+  return pages;
+}
+
 /// From the errors of the frames: how long after each jump they are within `limit_px`.
 Recovery recovery_of(std::span<const PathFrame> path, std::span<const float> max_px, double limit_px) {
   Recovery out;
@@ -173,7 +184,7 @@ void sum_load(const StreamScene& scene, std::int64_t length_us, RunResult& resul
 }  // namespace
 
 RunResult run_stream(const StreamScene& scene, std::span<const PathFrame> path, const StreamView& view,
-                     const RunSpec& spec, bool checks) {
+                     const RunSpec& spec, const Watch& watch) {
   RunResult result;
   Pool pool(scene, spec, result);
   for (const std::uint32_t page : root_pages(scene)) {
@@ -183,7 +194,7 @@ RunResult run_stream(const StreamScene& scene, std::span<const PathFrame> path, 
   }
   FrameCut cut(scene, view);
   std::optional<CutCheck> check;
-  if (checks) check.emplace(scene);
+  if (watch.checks) check.emplace(scene);
   ErrorMeter meter(view.pixel_error);
   const std::int64_t frame_us = kSecond / view.fps;
   for (std::size_t f = 0; f < path.size(); ++f) {
@@ -207,6 +218,7 @@ RunResult run_stream(const StreamScene& scene, std::span<const PathFrame> path, 
         break;
       }
     }
+    if (watch.keeps_drawn_pages) result.drawn_pages.push_back(pages_of(scene, items));
     result.max_px.push_back(meter.add_frame(scene, camera, items));
     result.missing_pages.push_back(static_cast<std::uint32_t>(cut.selector().requests().size()));
     pool.send(cut.selector().requests(), cut.selector().page_priorities(), static_cast<std::int64_t>(f), now_us,
@@ -223,12 +235,12 @@ RunResult run_stream(const StreamScene& scene, std::span<const PathFrame> path, 
 }
 
 Simulation simulate(const StreamScene& scene, std::span<const PathFrame> path, const StreamView& view,
-                    std::span<const RunSpec> specs, bool checks) {
+                    std::span<const RunSpec> specs, const Watch& watch) {
   Simulation out;
-  out.demand = measure_demand(scene, path, view, checks, out.findings, out.finding_count);
+  out.demand = measure_demand(scene, path, view, watch.checks, out.findings, out.finding_count);
   out.runs.resize(specs.size());
   parallel_for_each_index(specs.size(), 1,
-                          [&](std::size_t i) { out.runs[i] = run_stream(scene, path, view, specs[i], checks); });
+                          [&](std::size_t i) { out.runs[i] = run_stream(scene, path, view, specs[i], watch); });
   return out;
 }
 

@@ -74,7 +74,8 @@ struct RunResult {
   std::vector<float> max_px;                 ///< of each frame
   std::vector<std::uint32_t> missing_pages;  ///< of each frame, after what had arrived
   std::vector<Transfer> log;
-  std::vector<std::string> findings;  ///< of the checks, at most 20
+  std::vector<std::vector<std::uint32_t>> drawn_pages;  ///< of each frame, ascending; where they are kept
+  std::vector<std::string> findings;                    ///< of the checks, at most 20
   std::uint64_t finding_count = 0, checked_frames = 0;
 };
 
@@ -85,9 +86,13 @@ struct Simulation {
   std::uint64_t finding_count = 0;
 };
 
-/// Frames and runs side by side; no byte depends on how many. `checks`: what is drawn is held against the definition in
-/// every frame (check_cut.h). Memory: some 20 bytes per cluster and 100 per group for each thread, beside the scene.
+struct Watch {
+  bool checks = false;             ///< what is drawn is held against the definition in every frame (check_cut.h)
+  bool keeps_drawn_pages = false;  ///< RunResult::drawn_pages
+};
+
+/// Frames and runs side by side; no byte depends on how many. Memory: docs/reference/streaming.md.
 [[nodiscard]] Simulation simulate(const StreamScene& scene, std::span<const PathFrame> path, const StreamView& view,
-                                  std::span<const RunSpec> specs, bool checks);
+                                  std::span<const RunSpec> specs, const Watch& watch = {});
 
 }  // namespace meshlode::app

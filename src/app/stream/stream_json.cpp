@@ -50,6 +50,14 @@ void put_demand(JsonWriter& json, const Demand& demand) {
 void put_log(JsonWriter& json, const RunResult& run) {
   json.array_field("max_px", run.max_px);
   json.array_field("missing_pages", run.missing_pages);
+  json.key("drawn_pages");
+  json.begin_array();
+  for (const std::vector<std::uint32_t>& pages : run.drawn_pages) {
+    json.begin_array();
+    for (const std::uint32_t page : pages) json.value(page);
+    json.end_array();
+  }
+  json.end_array();
   json.key("requests");
   json.begin_array();
   for (const Transfer& transfer : run.log) {

@@ -12,7 +12,8 @@ namespace meshlode::app {
 namespace {
 
 TEST(CameraPath, MovesEvenlyFromRowToRowAndJumpsWhereARowCuts) {
-  const auto rows = parse_path("t,ex,ey,ez,tx,ty,tz\n0, 0,0,5, 0,0,0\n1, 2,0,5, 2,0,0, 90 # to the right\n\n2,9,0,5,9,0,0,cut\n", "p");
+  const auto rows = parse_path(
+      "t,ex,ey,ez,tx,ty,tz\n0, 0,0,5, 0,0,0\n1, 2,0,5, 2,0,0, 90 # to the right\n\n2,9,0,5,9,0,0,cut\n", "p");
   ASSERT_TRUE(rows) << rows.error().message();
   ASSERT_EQ(rows->size(), 3U);
   EXPECT_TRUE((*rows)[2].is_cut);

@@ -99,7 +99,7 @@ std::vector<PathFrame> stand(std::size_t frames, double x = 0.0) {
 }
 
 RunResult run_one(const StreamScene& scene, const std::vector<PathFrame>& path, const RunSpec& spec) {
-  const Simulation simulation = simulate(scene, path, small_view(), {&spec, 1}, true);
+  const Simulation simulation = simulate(scene, path, small_view(), {&spec, 1}, {.checks = true});
   EXPECT_EQ(count_findings(simulation), 0U);
   for (const RunResult& run : simulation.runs) {
     for (const std::string& text : run.findings) ADD_FAILURE() << text;
@@ -162,7 +162,7 @@ TEST(Simulate, WhatIsNotSeenMakesPlaceForWhatIs) {
 }
 
 TEST(Simulate, DemandIsWhatAFrameNeeds) {
-  const Demand demand = simulate(chain_scene(2), stand(1), small_view(), {}, true).demand;
+  const Demand demand = simulate(chain_scene(2), stand(1), small_view(), {}, {.checks = true}).demand;
   EXPECT_EQ(demand.max_bytes, 5000U) << "the mesh in view, and the root of the other";
   EXPECT_EQ(demand.root_pages, 2U);
   EXPECT_NEAR(demand.drawn_share, 4 * 494.0 / 5000.0, 1e-12);
@@ -233,7 +233,8 @@ TEST(Simulate, LawsHoldOnAssetsAndThreadsChangeNoByte) {
   std::vector<run::Asset> assets;
   assets.push_back(build_sample("rock.glb"));
   assets.push_back(build_sample("city.glb"));
-  const Placement placements[] = {{0, {0.0, 0.0, 0.0}, 0.0, 1.0}, {0, {3.0, 0.0, 1.0}, 40.0, 0.5}, {1, {0.0, -2.0, 0.0}, 0.0, 0.1}};
+  const Placement placements[] = {
+      {0, {0.0, 0.0, 0.0}, 0.0, 1.0}, {0, {3.0, 0.0, 1.0}, 40.0, 0.5}, {1, {0.0, -2.0, 0.0}, 0.0, 0.1}};
   const auto scene = make_stream_scene(assets, placements);
   ASSERT_TRUE(scene) << scene.error().message();
   std::vector<RunSpec> specs;
@@ -246,7 +247,7 @@ TEST(Simulate, LawsHoldOnAssetsAndThreadsChangeNoByte) {
     const auto path = sample_path(builtin_path(kind, *scene), view.fps, "path");
     ASSERT_TRUE(path);
     const auto text = [&] {
-      const Simulation simulation = simulate(*scene, *path, view, specs, true);
+      const Simulation simulation = simulate(*scene, *path, view, specs, {true, true});
       EXPECT_EQ(count_findings(simulation), 0U) << name_in(kBuiltinPathNames, kind);
       for (std::size_t i = 0; i < specs.size(); ++i) expect_sound_log(*scene, specs[i], simulation.runs[i]);
       return stream_json({{"a", "b"}, "p", *scene, *path, view, specs, simulation, true, true});
