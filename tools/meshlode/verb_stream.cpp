@@ -31,6 +31,7 @@ struct StreamWords {
   std::optional<std::string> scene, path;
   std::string builtin = "fly", size = "1920x1080", pool = "all,1/2,1/4", bandwidth = "10,50,200", latency = "5";
   double pixel_error = 1.0;
+  std::optional<double> near_distance;
   std::uint32_t fps = 60, jobs = 0;
   std::string max_decoded = kDefaultMaxDecodedText;
   std::optional<std::string> plot, output_file;
@@ -116,7 +117,11 @@ Result<app::StreamView> make_view(const StreamWords& words) {
     return Error{ErrorCode::kUsage, "--pixel-error", "give a number of pixels, 0.001 to 1000000"};
   }
   if (words.fps < 1 || words.fps > 1000) return Error{ErrorCode::kUsage, "--fps", "give 1 to 1000"};
+  if (words.near_distance && !(*words.near_distance > 0.0 && *words.near_distance <= 1e15)) {
+    return Error{ErrorCode::kUsage, "--near", "give a distance above 0"};
+  }
   view.pixel_error = words.pixel_error;
+  view.near_distance = words.near_distance.value_or(0.0);
   view.fps = words.fps;
   return view;
 }
@@ -139,7 +144,7 @@ Result<app::StreamScene> read_scene(const StreamWords& words, std::uint64_t max_
     TRY_LET(placed, app::parse_placements(*text, *words.scene, words.assets));
     placements = std::move(*placed);
   }
-  Result<app::StreamScene> scene = app::make_stream_scene(assets, placements);
+  Result<app::StreamScene> scene = app::make_stream_scene(assets, words.assets, placements);
   if (scene || !scene.error().where.empty()) return scene;
   return Error{scene.error().code, words.scene ? *words.scene : words.assets.front(), scene.error().detail};
 }
@@ -165,6 +170,8 @@ void add_options(OptionParser& parser, StreamWords& words) {
       "path as lines 't,ex,ey,ez,tx,ty,tz[,fovy][,cut]': seconds, eye, target, degrees (default: --builtin)");
   parser.add_value("--size WxH", words.size, "size of the picture in pixels, each 1 to 16384");
   parser.add_value("--pixel-error T", words.pixel_error, "allowed error on the screen in pixels, 0.001 to 1000000");
+  parser.add_value("--near D", words.near_distance,
+                   "near distance of the camera in world units, above 0 (default: 0.01 radii of the largest object)");
   parser.add_value("--fps N", words.fps, "frames a second, 1 to 1000");
   parser.group("Streaming");
   parser.add_value(

@@ -30,7 +30,7 @@ struct ResidentPages {
   camera.eye = frame.eye;
   camera.target = frame.target;
   camera.fovy = frame.fovy;
-  camera.near_distance = 0.01 * scene.object_radius;
+  camera.near_distance = view.near_distance > 0.0 ? view.near_distance : 0.01 * scene.object_radius;
   camera.width = view.width;
   camera.height = view.height;
   return camera;

@@ -185,14 +185,19 @@ std::uint64_t StreamScene::stored_bytes() const {
   return sum;
 }
 
-Result<StreamScene> make_stream_scene(std::span<const run::Asset> assets, std::span<const Placement> placements) {
+Result<StreamScene> make_stream_scene(std::span<const run::Asset> assets, std::span<const std::string> names,
+                                      std::span<const Placement> placements) {
   StreamScene scene;
   std::vector<std::uint32_t> first_mesh;
-  for (const run::Asset& asset : assets) {
+  for (std::size_t i = 0; i < assets.size(); ++i) {
     first_mesh.push_back(static_cast<std::uint32_t>(scene.meshes.size()));
-    TRY(add_tables(asset, scene));
+    if (const Status added = add_tables(assets[i], scene); !added) {
+      const Error& error = added.error();
+      return Error{error.code, names[i] + (error.where.empty() ? "" : ": ") + error.where, error.detail};
+    }
   }
   bool is_first = true;
+  std::uint64_t clusters = 0;
   for (const Placement& placement : placements) {
     const run::Asset& asset = assets[placement.asset];
     if (asset.instances().size() > kMostInstances - scene.instances.size()) {
@@ -200,9 +205,13 @@ Result<StreamScene> make_stream_scene(std::span<const run::Asset> assets, std::s
     }
     for (format::InstanceRecord instance : asset.instances()) {
       instance.mesh += first_mesh[placement.asset];
+      clusters += scene.meshes[instance.mesh].cluster_count;
       place(placement, instance);
       add_bounds(instance, is_first, scene);
       scene.instances.push_back(instance);
+    }
+    if (clusters > kMostPlacedClusters) {
+      return Error{ErrorCode::kUnsupported, "", "the instances of the scene have more than 134,217,728 clusters"};
     }
   }
   if (is_first) return Error{ErrorCode::kInvalid, "", "nothing of the scene can be drawn"};

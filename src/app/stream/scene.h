@@ -33,8 +33,10 @@ struct Placement {
 [[nodiscard]] Result<std::vector<Placement>> parse_placements(std::string_view text, const std::string& where,
                                                               std::span<const std::string> names);
 
-/// A pixel of 1080p shows fewer; a selection per frame would take seconds.
+/// A picture of 1080 rows shows fewer objects apart, and a selection of more takes seconds per frame.
 constexpr std::uint32_t kMostInstances = 65536;
+/// Of all instances together: a cut without culling may have as many entries, of 8 bytes each.
+constexpr std::uint64_t kMostPlacedClusters = std::uint64_t{1} << 27U;
 
 struct StreamPage {
   std::uint32_t bytes = 0;         ///< decoded: what it takes in a pool
@@ -57,10 +59,11 @@ struct StreamScene {
   [[nodiscard]] std::uint64_t stored_bytes() const;  ///< of all pages
 };
 
-/// Loads each page once, for the sizes of its clusters. Errors: those of load_page(); kUnsupported where the tables
-/// together have more records than ids, or the scene more than kMostInstances instances; kInvalid where nothing is
-/// drawn.
+/// Loads each page once, for the sizes of its clusters. Errors: those of load_page(), with the asset's name in front;
+/// kUnsupported where the tables together have more records than ids, or the scene more than kMostInstances instances
+/// or kMostPlacedClusters clusters; kInvalid where nothing is drawn. \param names  of the assets
 [[nodiscard]] Result<StreamScene> make_stream_scene(std::span<const run::Asset> assets,
+                                                    std::span<const std::string> names,
                                                     std::span<const Placement> placements);
 
 }  // namespace meshlode::app

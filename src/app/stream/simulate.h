@@ -26,8 +26,9 @@ namespace meshlode::app {
 
 struct StreamView {
   std::uint32_t width = 1920, height = 1080;
-  double pixel_error = 1.0;  ///< above 0
-  std::uint32_t fps = 60;    ///< 1 to 1000
+  double pixel_error = 1.0;    ///< above 0
+  double near_distance = 0.0;  ///< world units; 0: a hundredth of the largest object's radius
+  std::uint32_t fps = 60;      ///< 1 to 1000
 };
 
 struct Link {

@@ -26,6 +26,10 @@ std::string short_number(double value) {
   return number(value < 9.995 ? "%.2f" : value < 99.95 ? "%.1f" : "%.0f", value);
 }
 
+std::string plural(std::uint64_t count, const char* what) {
+  return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
+}
+
 std::string recovery_text(const Recovery& recovery) {
   return recovery.not_reached > 0 ? "never" : number("%.0f", recovery.max_ms);
 }
@@ -66,8 +70,9 @@ std::string stream_text(const StreamReport& report) {
   const double asked = report.view.pixel_error;
   const auto all = static_cast<double>(scene.page_bytes());
   std::string out;
-  append_format(out, "scene          %zu instances, %zu pages, %.2f MB (%.2f MB stored)\n", scene.instances.size(),
-                scene.pages.size(), to_mb(all), to_mb(scene.stored_bytes()));
+  append_format(out, "scene          %s in %s, %.2f MB (%.2f MB stored)\n",
+                plural(scene.instances.size(), "instance").c_str(), plural(scene.pages.size(), "page").c_str(),
+                to_mb(all), to_mb(scene.stored_bytes()));
   append_format(out, "path           ");
   std::size_t jumps = 0;
   for (const PathFrame& frame : report.frames) jumps += frame.is_jump ? 1 : 0;
@@ -82,8 +87,8 @@ std::string stream_text(const StreamReport& report) {
                 to_mb(demand.union_bytes));
   append_format(out, "drawn share    %.1f%% of what a frame needs; %.1f%% if groups were loaded alone\n",
                 100.0 * demand.drawn_share, 100.0 * demand.whole_group_share);
-  append_format(out, "always there   %.2f MB in %llu pages; alone they show %s px at most\n", to_mb(demand.root_bytes),
-                static_cast<unsigned long long>(demand.root_pages), short_number(demand.root_error.max_px).c_str());
+  append_format(out, "always there   %.2f MB in %s; alone %s px are shown at most\n", to_mb(demand.root_bytes),
+                plural(demand.root_pages, "page").c_str(), short_number(demand.root_error.max_px).c_str());
   if (!report.specs.empty()) {
     const std::string one = number("%.3g", asked), four = number("%.3g", 4.0 * asked);
     out += "\n          link        load             ms until       shown, px and area\n";

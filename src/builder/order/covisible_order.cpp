@@ -23,7 +23,8 @@ namespace meshlode::builder {
 
 namespace {
 
-constexpr std::uint32_t kTrainingViews = 1024;
+/// With 1,024 and with 4,096 the working sets of the dragon's paths in pages of 32 KiB are the same within 1%.
+constexpr std::uint32_t kTrainingViews = 2048;
 using ViewBits = std::array<std::uint64_t, kTrainingViews / 64>;
 
 /// A picture of 1080 rows at one pixel, 60 degrees high, 16:9. The distances are relative to the mesh, so that another
@@ -76,8 +77,8 @@ std::vector<GroupBounds> bounds_of(const LodDag& dag, const Hierarchy& hierarchy
   return bounds;
 }
 
-/// Looking at groups drawn at random, from a quarter of the mesh's radius to sixteen: nearer all of it is needed in a
-/// small piece, further away nothing but the top.
+/// Looking at groups drawn at random, from half the mesh's radius to eight: nearer a small piece is seen, further away
+/// nothing but the top is needed. Ranges from a quarter to sixteen, to four and to two radii do no better at 32 KiB.
 std::vector<TrainingView> training_views(std::span<const GroupBounds> bounds) {
   Vec3d low = bounds[0].center, high = low;
   for (const GroupBounds& group : bounds) {
@@ -89,7 +90,7 @@ std::vector<TrainingView> training_views(std::span<const GroupBounds> bounds) {
   std::vector<TrainingView> views(kTrainingViews);
   for (TrainingView& view : views) {
     const Vec3d target = bounds[random.below(bounds.size())].center;
-    const double distance = (1.0 + random.unit()) * format::exp2_exact(static_cast<int>(random.below(6)) - 2);
+    const double distance = (1.0 + random.unit()) * format::exp2_exact(static_cast<int>(random.below(4)) - 1);
     view.forward = random_direction(random);
     view.eye = target - view.forward * (distance * radius);
     Vec3d side = random_direction(random);

@@ -235,7 +235,8 @@ TEST(Simulate, LawsHoldOnAssetsAndThreadsChangeNoByte) {
   assets.push_back(build_sample("city.glb"));
   const Placement placements[] = {
       {0, {0.0, 0.0, 0.0}, 0.0, 1.0}, {0, {3.0, 0.0, 1.0}, 40.0, 0.5}, {1, {0.0, -2.0, 0.0}, 0.0, 0.1}};
-  const auto scene = make_stream_scene(assets, placements);
+  const std::vector<std::string> names{"rock", "city"};
+  const auto scene = make_stream_scene(assets, names, placements);
   ASSERT_TRUE(scene) << scene.error().message();
   std::vector<RunSpec> specs;
   for (const auto& pool : {std::optional<std::uint64_t>(), std::optional(scene->page_bytes() / 3)}) {
@@ -260,7 +261,8 @@ TEST(StreamScene, MoreInstancesThanAPictureShowsAreRefused) {
   std::vector<run::Asset> assets;
   assets.push_back(build_sample("city.glb"));  // 51 instances
   const std::vector<Placement> placements(2000, Placement{});
-  const auto scene = make_stream_scene(assets, placements);
+  const std::vector<std::string> names{"city"};
+  const auto scene = make_stream_scene(assets, names, placements);
   ASSERT_FALSE(scene);
   EXPECT_EQ(scene.error().code, ErrorCode::kUnsupported);
 }

@@ -33,6 +33,7 @@ run stream rock.lode --pool 1,,2
 run stream rock.lode --bandwidth 0
 run stream rock.lode --latency -1
 run stream rock.lode --fps 0
+run stream rock.lode --near -1
 run stream rock.lode --pixel-error 0
 run stream rock.lode --size 0x10
 run stream rock.lode --builtin dance
@@ -53,4 +54,7 @@ run stream rock.lode --path missing.csv
 code stream rock.lode --scene rock.lode
 run stream rock.lode -o rock.lode
 run stream rock.lode --plot rock.png
+# A page that is damaged is named, with its file.
+printf 'x' | dd of=crystal.lode bs=1 seek=$(($(wc -c <crystal.lode) - 9)) conv=notrunc 2>/dev/null
+"$MESHLODE" stream rock.lode crystal.lode 2>&1 | grep -o '^meshlode: crystal.lode: page '
 files
