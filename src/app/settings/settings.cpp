@@ -79,6 +79,14 @@ constexpr std::array<SettingInfo, kSettingCount> kSettings{{
     {Setting::kKeepLayers, "keep-layers", "", kAdvanced,
      "keep surfaces that lie close above one another in order in coarse cuts; off: gaps are not looked for", "on",
      false},
+    {Setting::kPageSize, "page-size", "", "Output",
+     "largest page, in KiB; smaller ones load less that is not drawn, in more requests; a larger group has its own",
+     "128", false},
+    {Setting::kPageOrder, "page-order", "", "Output",
+     "order of groups inside a level: level, as they were built; covisible, those together that views need together",
+     "level", false},
+    {Setting::kRootBytes, "root-bytes", " auto|N", "Output",
+     "limit of each mesh's first page in bytes, 16384 to 131072; auto: as --page-size", "auto", false},
 }};
 
 struct UseWord {
@@ -130,6 +138,10 @@ std::optional<std::uint32_t> parse_cluster_triangles(std::string_view text) {
 
 std::optional<std::uint32_t> parse_group_clusters(std::string_view text) {
   return parse_count(text, builder::kFewestGroupClusters, builder::kMostGroupClusters);
+}
+
+std::optional<std::uint32_t> parse_root_bytes(std::string_view text) {
+  return parse_count(text, builder::kFewestRootBytes, format::kMaxPageBytes);
 }
 
 std::string wanted(const char* what, std::string_view word) {
@@ -265,6 +277,9 @@ builder::PipelineOptions options_of(const std::array<SettledWord, kSettingCount>
   options.max_cluster_triangles =
       parse_cluster_triangles(word(Setting::kClusterTriangles)).value_or(options.max_cluster_triangles);
   options.group_clusters = parse_group_clusters(word(Setting::kGroupClusters)).value_or(options.group_clusters);
+  options.page_kib = parse_count(word(Setting::kPageSize), 16, 128).value_or(options.page_kib);
+  options.page_order = value_in(builder::kPageOrderNames, word(Setting::kPageOrder)).value_or(options.page_order);
+  options.root_bytes = parse_root_bytes(word(Setting::kRootBytes)).value_or(options.root_bytes);
   options.repair = word(Setting::kRepair) == "true";
   options.linear_colors = word(Setting::kLinearColors) == "true";
   options.keep_topology = word(Setting::kKeepTopology) == "true";
@@ -310,6 +325,8 @@ std::vector<std::string> choices_of(Setting setting) {
     case Setting::kLockBorders: return {"false", "true"};
     case Setting::kPromise: return all_names(format::kPromiseNames);
     case Setting::kKeepLayers: return {"on", "off"};
+    case Setting::kPageSize: return {"16", "32", "64", "128"};
+    case Setting::kPageOrder: return all_names(builder::kPageOrderNames);
     default: return {};
   }
 }
@@ -339,6 +356,8 @@ std::string find_fault(Setting setting, std::string_view word) {
     case Setting::kGroupClusters:
       return parse_group_clusters(word) ? "" : wanted("a whole number of clusters from 4 to 32", word);
     case Setting::kNormalError: return parse_angle(word) ? "" : wanted("an angle above 0 and up to 180 degrees", word);
+    case Setting::kRootBytes:
+      return word == "auto" || parse_root_bytes(word) ? "" : wanted("auto or 16384 to 131072 bytes", word);
     case Setting::kUvError:
       return word == "auto" || parse_uv_error(word)
                  ? ""

@@ -42,8 +42,11 @@ enum class Setting : std::uint8_t {
   kAggregate,
   kPromise,
   kKeepLayers,
+  kPageSize,
+  kPageOrder,
+  kRootBytes,
 };
-constexpr std::size_t kSettingCount = 21;
+constexpr std::size_t kSettingCount = 24;
 
 struct SettingInfo {
   Setting setting;

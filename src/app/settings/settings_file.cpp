@@ -51,6 +51,11 @@ bool is_list(Setting setting) {
   return setting == Setting::kKeep || setting == Setting::kDrop;
 }
 
+/// Of a setting with choices: where these are numbers.
+bool takes_number(Setting setting) {
+  return choices_of(setting).empty() || setting == Setting::kPageSize;
+}
+
 /// The word that a value stands for; nothing where it is of another kind.
 std::optional<std::string> word_of(Setting setting, const Json& value) {
   if (is_flag(setting)) {
@@ -68,14 +73,14 @@ std::optional<std::string> word_of(Setting setting, const Json& value) {
     return words;
   }
   const auto number = value.number();
-  if (!number || !choices_of(setting).empty()) return std::nullopt;
+  if (!number || !takes_number(setting)) return std::nullopt;
   return number_text(*number);
 }
 
 const char* kind_of(Setting setting) {
   if (is_flag(setting)) return "give true or false";
   if (is_list(setting)) return "give a text or an array of texts";
-  return choices_of(setting).empty() ? "give a number or a text" : "give a text";
+  return takes_number(setting) ? "give a number or a text" : "give a text";
 }
 
 class FileReader {
