@@ -57,8 +57,8 @@ constexpr std::uint32_t kOutside = 0x80000000U;
   for (std::uint32_t k = 0; k < frustum.planes.size(); ++k) {
     if ((crossed >> k & 1U) == 0) continue;
     const MeshFrustum::Plane& plane = frustum.planes[k];
-    const double at =
-        (plane.normal[0] * double{center[0]} + plane.normal[1] * double{center[1]}) + plane.normal[2] * double{center[2]};
+    const double at = (plane.normal[0] * double{center[0]} + plane.normal[1] * double{center[1]}) +
+                      plane.normal[2] * double{center[2]};
     const double reach = plane.length * double{radius};
     if (at + reach < plane.limit) return kOutside;
     if (at - reach >= plane.limit) left &= ~(1U << k);
