@@ -67,8 +67,8 @@ void expect_pages_unpack(const Bytes& bytes) {
     ASSERT_TRUE(std::ranges::equal(page->bytes(), expected->bytes())) << p;
     const meshlode_range c_range = meshlode_page_range(streamed.asset, p);
     ASSERT_TRUE(c_range.offset == range.offset && c_range.bytes == range.bytes);
-    ASSERT_EQ(meshlode_unpack_page(streamed.asset, p, stored.data(), stored.size(), c_words.data(),
-                                   4 * c_words.size(), nullptr),
+    ASSERT_EQ(meshlode_unpack_page(streamed.asset, p, stored.data(), stored.size(), c_words.data(), 4 * c_words.size(),
+                                   nullptr),
               MESHLODE_OK);
     ASSERT_EQ(words, c_words);
     ClusterIntegers a, b;
@@ -84,7 +84,8 @@ View random_view(std::uint32_t& state, const AssetFile& asset, std::array<double
     return static_cast<double>(state >> 8U) * 0x1p-24;
   };
   const auto instances = asset.instances();
-  const format::InstanceRecord& instance = instances[static_cast<std::size_t>(next() * 0.999 * static_cast<double>(instances.size()))];
+  const format::InstanceRecord& instance =
+      instances[static_cast<std::size_t>(next() * 0.999 * static_cast<double>(instances.size()))];
   const format::MeshRecord& mesh = asset.meshes()[instance.mesh];
   const double reach = instance.scale * mesh.diagonal * (next() < 0.5 ? 0.3 : 20.0);
   View view;
@@ -115,8 +116,12 @@ void expect_cuts_of_what_is_resident(const Bytes& bytes) {
     const View view = random_view(state, *whole, target);
     const auto frustum = make_frustum(view, target, {0.0, 1.0, 0.0}, 1.5);
     ASSERT_TRUE(frustum.ok());
-    meshlode_view c_view{{view.eye[0], view.eye[1], view.eye[2]}, 0, view.fovy_radians, view.ortho_height,
-                         view.near_distance, view.height_px};
+    meshlode_view c_view{{view.eye[0], view.eye[1], view.eye[2]},
+                         0,
+                         view.fovy_radians,
+                         view.ortho_height,
+                         view.near_distance,
+                         view.height_px};
     const double up[3] = {0.0, 1.0, 0.0};
     meshlode_frustum c_frustum{};
     ASSERT_EQ(meshlode_make_frustum(&c_view, target.data(), up, 1.5, &c_frustum, nullptr), MESHLODE_OK);
@@ -155,8 +160,8 @@ void expect_cuts_of_what_is_resident(const Bytes& bytes) {
     if (is_culled) {
       ASSERT_LE(items.size(), whole->select_view(view, 1.0)->size());
       std::size_t count = 0;
-      ASSERT_EQ(meshlode_select_frustum(streamed.asset, &c_view, &c_frustum, 1.0, c_items.data(), c_items.size(), &count,
-                                        nullptr),
+      ASSERT_EQ(meshlode_select_frustum(streamed.asset, &c_view, &c_frustum, 1.0, c_items.data(), c_items.size(),
+                                        &count, nullptr),
                 MESHLODE_OK);
       ASSERT_EQ(count, items.size());
     }
@@ -184,8 +189,8 @@ TEST_P(HeadOfData, PagesUnpackAndCutsAgreeInEveryCodec) {
   const Bytes plain = built(format::Codec::kNone);
   ASSERT_FALSE(plain.empty());
   expect_cuts_of_what_is_resident(plain);
-  for (const format::Codec codec : {format::Codec::kNone, format::Codec::kLz4, format::Codec::kZstd,
-                                    format::Codec::kDraco}) {
+  for (const format::Codec codec :
+       {format::Codec::kNone, format::Codec::kLz4, format::Codec::kZstd, format::Codec::kDraco}) {
     SCOPED_TRACE(static_cast<int>(codec));
     const Bytes stored = test::stored_as(plain, codec);
     ASSERT_FALSE(stored.empty());
@@ -228,9 +233,9 @@ TEST(ApiHead, WhatMakesNoSenseIsAnError) {
   EXPECT_EQ(view, nullptr);
   const meshlode_range range = meshlode_page_range(streamed.asset, 0);
   const auto stored = streamed.read(range.offset, range.bytes);
-  EXPECT_EQ(meshlode_unpack_page(streamed.asset, 0, stored.data(), stored.size() - 1, words.data(), 4 * words.size(),
-                                 &error),
-            MESHLODE_USAGE);
+  EXPECT_EQ(
+      meshlode_unpack_page(streamed.asset, 0, stored.data(), stored.size() - 1, words.data(), 4 * words.size(), &error),
+      MESHLODE_USAGE);
   EXPECT_EQ(meshlode_unpack_page(streamed.asset, 0, stored.data(), stored.size(), words.data(), 4, &error),
             MESHLODE_TOO_SMALL);
   EXPECT_EQ(meshlode_unpack_page(streamed.asset, 0, nullptr, 0, words.data(), 4 * words.size(), &error),
@@ -240,9 +245,9 @@ TEST(ApiHead, WhatMakesNoSenseIsAnError) {
             MESHLODE_USAGE);
   Bytes broken(stored.begin(), stored.end());
   broken[broken.size() / 2] ^= 4U;
-  EXPECT_EQ(meshlode_unpack_page(streamed.asset, 0, broken.data(), broken.size(), words.data(), 4 * words.size(),
-                                 &error),
-            MESHLODE_INVALID);
+  EXPECT_EQ(
+      meshlode_unpack_page(streamed.asset, 0, broken.data(), broken.size(), words.data(), 4 * words.size(), &error),
+      MESHLODE_INVALID);
   EXPECT_EQ(std::string(error.text).substr(0, 22), "page 0, field checksum");
   EXPECT_EQ(meshlode_page_range(streamed.asset, 0xFFFFFFFFU).bytes, 0U);
   EXPECT_EQ(meshlode_blob_range(streamed.asset, 0).bytes, 0U);

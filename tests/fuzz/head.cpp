@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// An engine that reads a hostile file itself, in C: the head as far as it came, selections by what is resident, pages and
-// images from their ranges. Four bytes before the file say what is resident, how much of the head is there, from how far
-// the scene is seen, and how many pixels are allowed.
+// An engine that reads a hostile file itself, in C: the head as far as it came, selections by what is resident, pages
+// and images from their ranges. Four bytes before the file say what is resident, how much of the head is there, from
+// how far the scene is seen, and how many pixels are allowed.
 #include <algorithm>
 #include <memory>
 #include <vector>
@@ -33,10 +33,12 @@ void select(const meshlode_asset* asset, const std::uint8_t* choices, std::uint3
   meshlode_frustum frustum{};
   require(meshlode_make_frustum(&view, target, up, 1.5, &frustum, nullptr) == MESHLODE_OK, "no frustum");
   std::vector<std::uint32_t> resident((pages + 31) / 32);
-  for (std::size_t w = 0; w < resident.size(); ++w) resident[w] = static_cast<std::uint32_t>(choices[0] * 0x9E3779B9U * (w + 1));
+  for (std::size_t w = 0; w < resident.size(); ++w)
+    resident[w] = static_cast<std::uint32_t>(choices[0] * 0x9E3779B9U * (w + 1));
   std::vector<meshlode_draw_item> items(64);
   std::size_t count = 0;
-  for (const meshlode_frustum* planes : {static_cast<const meshlode_frustum*>(nullptr), static_cast<const meshlode_frustum*>(&frustum)}) {
+  for (const meshlode_frustum* planes :
+       {static_cast<const meshlode_frustum*>(nullptr), static_cast<const meshlode_frustum*>(&frustum)}) {
     const meshlode_status status = meshlode_select_resident(selector, &view, planes, choices[3] / 8.0, resident.data(),
                                                             items.data(), items.size(), &count, nullptr);
     require(status == (count > items.size() ? MESHLODE_TOO_SMALL : MESHLODE_OK), "a selection fails");

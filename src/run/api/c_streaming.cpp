@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The part of <meshlode/meshlode.h> for callers that read a file themselves: heads, ranges, bytes that they hand in, and
-// selection by what is there.
+// The part of <meshlode/meshlode.h> for callers that read a file themselves: heads, ranges, bytes that they hand in,
+// and selection by what is there.
 #include <optional>
 
 #include "run/api/c_shared.h"
@@ -39,7 +39,8 @@ using namespace meshlode::run::c;
 
 meshlode_status meshlode_head_bytes(const void* first, size_t size, uint64_t file_bytes, uint64_t* needed,
                                     meshlode_error* error) {
-  if (needed == nullptr || (first == nullptr && size > 0)) return fail(error, MESHLODE_USAGE, "first or needed is NULL");
+  if (needed == nullptr || (first == nullptr && size > 0))
+    return fail(error, MESHLODE_USAGE, "first or needed is NULL");
   return guard(error, [&] {
     const auto head = run::find_head(bytes_at(first, size), file_bytes);
     if (!head) return fail(error, head.error());
@@ -144,7 +145,9 @@ meshlode_status meshlode_select_resident(meshlode_selector* selector, const mesh
   run::Camera camera;
   if (const meshlode_status status = read_view(*view, pixel_error, camera, error); status != MESHLODE_OK) return status;
   const auto planes = frustum != nullptr ? std::optional(planes_of_c(*frustum)) : std::nullopt;
-  const run::ResidentQuery query{camera, pixel_error, {resident, resident != nullptr ? (selector->asset->pages().size() + 31) / 32 : 0},
+  const run::ResidentQuery query{camera,
+                                 pixel_error,
+                                 {resident, resident != nullptr ? (selector->asset->pages().size() + 31) / 32 : 0},
                                  planes ? &*planes : nullptr};
   *count = selector->selector.select(run::tables_of(*selector->asset), query,
                                      {reinterpret_cast<run::ClusterInstance*>(items), capacity});

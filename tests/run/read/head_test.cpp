@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// An asset by its head: what the tables say is as of the whole file, pages come from bytes that the caller hands in, and
-// a head that is cut off or hostile is refused at its place.
+// An asset by its head: what the tables say is as of the whole file, pages come from bytes that the caller hands in,
+// and a head that is cut off or hostile is refused at its place.
 #include <algorithm>
 #include <cstring>
 #include <string>
@@ -116,13 +116,15 @@ INSTANTIATE_TEST_SUITE_P(Codecs, HeadOfCodec,
 // A checksum of what is stored does not say what it decodes to.
 TEST(Head, BothChecksumsOfAPageAreChecked) {
   Bytes file = test::sample_asset_bytes(format::Codec::kStrips);
-  const std::uint64_t at = test::section_offset(file, SectionId::kPages) + offsetof(format::PageRecord, decoded_checksum);
+  const std::uint64_t at =
+      test::section_offset(file, SectionId::kPages) + offsetof(format::PageRecord, decoded_checksum);
   file[at] ^= 1U;
   test::reseal(file);
   const Asset head = *Asset::from_head(first_bytes(file, head_size(file)), file.size());
   const format::PageRecord& page = head.pages()[0];
   std::vector<std::uint32_t> words(page.bytes / 4);
-  const Status status = unpack_stored_page(head, PageId(0U), std::span(file).subspan(page.offset, page.stored_bytes), words);
+  const Status status =
+      unpack_stored_page(head, PageId(0U), std::span(file).subspan(page.offset, page.stored_bytes), words);
   ASSERT_FALSE(status.ok());
   EXPECT_EQ(status.error().where, "page 0, field decoded_checksum");
 }
@@ -203,7 +205,8 @@ TEST(Head, EveryTruncationIsRefusedWithItsPlace) {
       EXPECT_EQ(head.error().code, ErrorCode::kInvalid);
     }
     // A file that ends elsewhere than it says: the size that the caller knows decides.
-    for (const std::uint64_t other : {std::uint64_t{0}, size, std::uint64_t{file.size() - 1}, std::uint64_t{file.size() + 1}, UINT64_MAX}) {
+    for (const std::uint64_t other :
+         {std::uint64_t{0}, size, std::uint64_t{file.size() - 1}, std::uint64_t{file.size() + 1}, UINT64_MAX}) {
       const auto head = Asset::from_head(file, other);
       ASSERT_FALSE(head.ok()) << other;
       EXPECT_EQ(head.error().where, other == 0 ? "header, field magic" : "header, field file_bytes");
@@ -279,7 +282,8 @@ void use_head(const Asset& head, const Bytes& bytes, test::RandomSource& random)
     const format::PageRecord& record = head.pages()[p];
     std::vector<std::uint32_t> words(record.bytes / 4);
     Bytes stored(record.stored_bytes);
-    for (std::size_t i = 0; i < stored.size() && record.offset + i < bytes.size(); ++i) stored[i] = bytes[record.offset + i];
+    for (std::size_t i = 0; i < stored.size() && record.offset + i < bytes.size(); ++i)
+      stored[i] = bytes[record.offset + i];
     const Status status = unpack_stored_page(head, PageId(p), stored, words);
     ASSERT_TRUE(status.ok() || !status.error().where.empty());
   }
@@ -302,7 +306,8 @@ TEST(Head, TwentyThousandMutantsAreRefusedOrUsed) {
     // Most in the tables; a quarter in what a page stores.
     for (std::uint32_t k = 1 + random.below(3); k-- > 0;) {
       const std::size_t at = random.below(static_cast<std::uint32_t>(n % 4 == 0 ? file.size() : size));
-      mutant[at] = static_cast<std::uint8_t>(random.chance(0.5) ? random.below(256) : mutant[at] ^ (1U << random.below(8)));
+      mutant[at] =
+          static_cast<std::uint8_t>(random.chance(0.5) ? random.below(256) : mutant[at] ^ (1U << random.below(8)));
     }
     if (n % 8 != 0) test::reseal(mutant);
     const std::size_t given = n % 16 == 3 ? random.below(static_cast<std::uint32_t>(size + 64)) : size;
@@ -320,7 +325,8 @@ TEST(Head, TwentyThousandMutantsAreRefusedOrUsed) {
 }
 
 TEST(JsonTextTest, ReadsWhatGltfHas) {
-  const JsonText json(R"( {"a": [1, {"x": "}]\",", "n": 3.0}, [], 12] , "b":{"c" : 7 },"e":-1,"f":1e3,"g":1.5,"a2":"s"} )");
+  const JsonText json(
+      R"( {"a": [1, {"x": "}]\",", "n": 3.0}, [], 12] , "b":{"c" : 7 },"e":-1,"f":1e3,"g":1.5,"a2":"s"} )");
   EXPECT_TRUE(json.is_object());
   EXPECT_EQ(json.find("a").size(), 4U);
   EXPECT_EQ(json.find("a").item(0).index(), 1U);
@@ -338,9 +344,11 @@ TEST(JsonTextTest, WhateverItIsItEnds) {
   test::RandomSource random(402);
   const std::string letters = "{}[]\",:\\ 0129.ax\n";
   for (int n = 0; n < 20000; ++n) {
-    std::string text = random.chance(0.5) ? R"({"images":[{"blob":0}],"textures":[{"source":0}]})" : std::string(random.below(40), ' ');
+    std::string text = random.chance(0.5) ? R"({"images":[{"blob":0}],"textures":[{"source":0}]})"
+                                          : std::string(random.below(40), ' ');
     for (std::uint32_t k = text.empty() ? 0 : 1 + random.below(8); k-- > 0;) {
-      text[random.below(static_cast<std::uint32_t>(text.size()))] = letters[random.below(static_cast<std::uint32_t>(letters.size()))];
+      text[random.below(static_cast<std::uint32_t>(text.size()))] =
+          letters[random.below(static_cast<std::uint32_t>(letters.size()))];
     }
     const JsonText json(text);
     (void)json.find("textures").item(0).find("source").index();

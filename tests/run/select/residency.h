@@ -52,7 +52,7 @@ struct Residency {
 };
 
 inline Residency random_residency(RandomSource& random, const TestTables& tables, std::uint32_t pages, double chance,
-                           bool has_roots) {
+                                  bool has_roots) {
   Residency out(pages);
   for (std::uint32_t p = 0; p < pages; ++p) {
     if (random.chance(chance)) out.add(p);
@@ -89,8 +89,8 @@ inline std::vector<ClusterInstance> copy_of(std::span<const ClusterInstance> ite
 }
 
 /// In world space, by the words of it.
-inline bool is_sphere_outside(const Frustum& frustum, const format::InstanceRecord& instance, const format::MeshRecord& mesh,
-                       const format::CullSphere& sphere) {
+inline bool is_sphere_outside(const Frustum& frustum, const format::InstanceRecord& instance,
+                              const format::MeshRecord& mesh, const format::CullSphere& sphere) {
   const double* m = instance.transform;
   for (const auto& plane : frustum.planes) {
     double at = plane[3], reach2 = 0.0;
