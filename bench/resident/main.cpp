@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// bench_resident ASSET…: what selecting by residency costs a frame. A field of 20 x 20 instances that take the meshes of
-// the assets in turn, and one of 1,000 of which nine tenths are far away or behind; a walk at 1 pixel, 1920 x 1080,
+// bench_resident ASSET…: what selecting by residency costs a frame. A field of 20 x 20 instances that take the meshes
+// of the assets in turn, and one of 1,000 of which nine tenths are far away or behind; a walk at 1 pixel, 1920 x 1080,
 // 60 degrees. One thread; its processor time.
 #include <algorithm>
 #include <cmath>
@@ -100,8 +100,8 @@ void measure(const Scene& scene, const char* name, double share) {
   std::sort(milliseconds.begin(), milliseconds.end());
   double mean = 0.0;
   for (const double ms : milliseconds) mean += ms / kFrames;
-  std::printf("%-28s %5.0f%% of %4u pages  %9.0f clusters  %6.1f requests  ms: mean %.3f median %.3f largest %.3f\n", name,
-              100.0 * share, scene.pages, drawn, requests, mean, milliseconds[kFrames / 2], milliseconds.back());
+  std::printf("%-28s %5.0f%% of %4u pages  %9.0f clusters  %6.1f requests  ms: mean %.3f median %.3f largest %.3f\n",
+              name, 100.0 * share, scene.pages, drawn, requests, mean, milliseconds[kFrames / 2], milliseconds.back());
 }
 
 }  // namespace
@@ -117,7 +117,9 @@ int main(int argc, char** argv) {
     scene.add(*asset);
   }
   if (scene.meshes.empty()) return 1;
-  const auto mesh = [&](int i) { return static_cast<std::uint32_t>(i) % static_cast<std::uint32_t>(scene.meshes.size()); };
+  const auto mesh = [&](int i) {
+    return static_cast<std::uint32_t>(i) % static_cast<std::uint32_t>(scene.meshes.size());
+  };
   for (int i = 0; i < 400; ++i) scene.place(mesh(i), 3.0 * (i % 20) - 28.5, 3.0 * (i / 20) - 28.5);
   for (const double share : {1.0, 0.25}) measure(scene, "20 x 20", share);
   scene.instances.clear();

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Preloaded into a program: writes to the file $READS_LOG how it reads files whose names end in .lode, a line a call. */
+/* Preloaded into a program: writes to the file $READS_LOG how it reads files whose names end in .lode, a line a call.
+ */
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <fcntl.h>
@@ -45,5 +46,5 @@ ssize_t read(int file, void* to, size_t bytes) {
 void* mmap(void* at, size_t bytes, int protection, int flags, int file, off_t offset) {
   if (file >= 0 && file == asset) log_call("mmap", offset, bytes);
   return ((void* (*)(void*, size_t, int, int, int, off_t))dlsym(RTLD_NEXT, "mmap"))(at, bytes, protection, flags, file,
-                                                                                      offset);
+                                                                                    offset);
 }

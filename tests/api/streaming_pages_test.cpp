@@ -77,8 +77,9 @@ TEST(StreamingPages, ReadsTheHeadAndWantedPagesAlone) {
   for (std::size_t r = 3; r < reads.size(); ++r) EXPECT_TRUE(pages.contains(reads[r])) << r;
 
   unsigned clusters = 0, used = 0, pool = 0;
-  ASSERT_EQ(std::sscanf(text_of(folder / "out").c_str(), "%u clusters, %u bytes in a pool of %u", &clusters, &used, &pool),
-            3);
+  ASSERT_EQ(
+      std::sscanf(text_of(folder / "out").c_str(), "%u clusters, %u bytes in a pool of %u", &clusters, &used, &pool),
+      3);
   std::uint64_t decoded = 0;
   for (const format::PageRecord& page : asset->pages()) decoded += page.bytes;
   EXPECT_EQ(pool, decoded / 4);
