@@ -408,8 +408,8 @@ typedef struct meshlode_page_request {
 /** Chooses what to draw with the pages at hand. What is drawn covers each piece of each instance's surface exactly once
  * where the pages with terminal groups are resident, and as finely as resident pages allow; with all pages resident it
  * is what meshlode_select_frustum chooses. Takes no memory. `resident` are as many words as there are pages, divided by
- * 32 and rounded up: page p is resident if and only if bit p % 32 of word p / 32 is set. `frustum` may be NULL: nothing
- * is culled. Items, capacity, count and errors as for meshlode_select_view. */
+ * 32 and rounded up: page p is resident if and only if bit p % 32 of word p / 32 is set; NULL: none is. `frustum` may
+ * be NULL: nothing is culled. Items, capacity, count and errors as for meshlode_select_view. */
 MESHLODE_API meshlode_status meshlode_select_resident(meshlode_selector* selector, const meshlode_view* view,
                                                       const meshlode_frustum* frustum, double pixel_error,
                                                       const uint32_t* resident, meshlode_draw_item* items,

@@ -21,8 +21,8 @@
 /// std::bad_alloc.
 ///
 /// Thread safety. Any number of threads may call const members of an AssetFile or a PageBytes at once; each selects
-/// with a ResidentSelector of its own. Calling
-/// choose_promise, moving or destroying one while another thread uses it is a race.
+/// with a ResidentSelector of its own. Calling choose_promise, moving or destroying one while another thread uses it is
+/// a race.
 ///
 /// Not promised: caching (a page loaded twice is unpacked twice); the layout of records in a later format version; a
 /// stable ABI before version 1 (docs/reference/compatibility.md).
@@ -138,12 +138,12 @@ class ResidentSelector {
 
   /// Chooses what to draw for `view` with the pages at hand, ascending by (instance, cluster). What is drawn covers
   /// each piece of each instance's surface exactly once where the pages with terminal groups are resident, and as
-  /// finely as resident pages allow; with all pages resident it is what AssetFile::select_view chooses. \param resident
-  /// page p is resident iff bit p % 32 of word p / 32 is set; pages behind the end are not \param items     gets what
-  /// is drawn; takes memory only where it has to grow \param frustum   null: nothing is culled. Else items whose
-  /// culling sphere is outside are left out, and pages that
-  ///                  only such clusters want are not asked for
-  /// \return kUsage if pixel_error or a member of `view` is outside its range
+  /// finely as resident pages allow; with all pages resident it is what AssetFile::select_view chooses.
+  ///
+  /// Page p is resident iff bit p % 32 of word p / 32 of `resident` is set; pages behind its end are not. `items` gets
+  /// what is drawn, and takes memory only where it has to grow. Without a frustum nothing is culled; with one, items
+  /// whose culling sphere is outside are left out, and pages that only such clusters want are not asked for. Errors:
+  /// kUsage if pixel_error or a member of `view` is outside its range.
   [[nodiscard]] Status select(const View& view, double pixel_error, std::span<const std::uint32_t> resident,
                               std::vector<DrawItem>& items, const Frustum* frustum = nullptr);
 
