@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "run/select/frustum.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "run/select/select.h"
@@ -45,7 +46,7 @@ Frustum frustum_of(const Camera& camera) {
   if (glm::dot(side, side) < 1e-18 * glm::dot(shape.forward, shape.forward)) shape.up = {0.0, 0.0, -1.0};
   shape.is_orthographic = camera.is_orthographic;
   shape.half_height = camera.is_orthographic ? 0.5 * camera.ortho_height : std::tan(0.5 * camera.fovy);
-  shape.aspect = double{static_cast<double>(camera.width)} / camera.height;
+  shape.aspect = static_cast<double>(camera.width) / camera.height;
   return make_frustum(shape);
 }
 

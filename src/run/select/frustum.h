@@ -39,7 +39,7 @@ struct MeshFrustum {
     double length;  ///< at least that of the normal
     double limit;   ///< inside: normal · p >= limit
   };
-  std::array<Plane, 6> planes;
+  std::array<Plane, 6> planes{};
   std::uint32_t crossed = 0;  ///< bit k: plane k is to be tested
 };
 constexpr std::uint32_t kOutside = 0x80000000U;
