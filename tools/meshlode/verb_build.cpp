@@ -21,7 +21,6 @@
 #include "app/batch/shard/read_manifest.h"
 #include "app/batch/tell/tell.h"
 #include "app/settings/settings.h"
-#include "base/byte_size.h"
 #include "base/printable.h"
 #include "base/try.h"
 #include "batch_files.h"
@@ -245,14 +244,6 @@ struct LimitWords {
   std::string max_memory = "auto", max_decoded = kDefaultMaxDecodedText;
   std::vector<std::string> allow_outside;
 };
-
-/// `--max-memory` in bytes; 0: what the machine has. Error: kUsage.
-Result<std::uint64_t> parse_max_memory(const std::string& text) {
-  if (text == "auto") return std::uint64_t{0};
-  const auto bytes = parse_byte_size(text);
-  if (bytes && *bytes > 0) return *bytes;
-  return wrong_size("--max-memory", text, "auto or a size above 0, such as 8GiB or 8GB");
-}
 
 Status set_options(const BuildWords& words, const LimitWords& limits, app::BatchOptions& options) {
   const app::SettingLayer given = given_settings(words);

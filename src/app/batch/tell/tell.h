@@ -22,7 +22,16 @@ namespace meshlode::app {
                                         const std::string& settings, int exit_code, const ShardPlan* shard = nullptr,
                                         bool is_complete = true);
 
-/// A test case a file, as build servers show them: a failure with its line, a skipped one as skipped.
+/// One file of a batch of any verb, as build servers show it.
+struct TestCase {
+  std::string name;
+  double seconds = 0.0;
+  int exit_code = 0;  ///< not 0: it failed
+  std::string text;   ///< why, or what else there is to say
+  bool is_skipped = false;
+};
+/// A test case a file: a failure with its line, a skipped one as skipped.
+[[nodiscard]] std::string junit_xml(const std::string& verb, const std::vector<TestCase>& tests);
 [[nodiscard]] std::string junit_xml(const std::vector<JobResult>& results);
 
 /// summary_line(), and the sums of triangles, bytes and seconds.
