@@ -133,7 +133,8 @@ std::size_t files_at_once(const std::vector<BulkInput>& files, std::uint64_t max
   }
   std::vector<std::uint64_t> needs;
   for (const BulkInput& input : files) {
-    const std::uint64_t bytes = app::weigh_scene(input.path) + (input.source.empty() ? 0 : app::weigh_scene(input.source));
+    const std::uint64_t bytes =
+        app::weigh_scene(input.path) + (input.source.empty() ? 0 : app::weigh_scene(input.source));
     needs.push_back(std::min(bytes, ~std::uint64_t{0} / kMemoryPerByte) * kMemoryPerByte);
   }
   std::sort(needs.rbegin(), needs.rend());
@@ -222,13 +223,14 @@ void add_bulk_resources(OptionParser& parser, BulkWords& words) {
 
 Result<BulkInputs> find_bulk_inputs(const Verb& verb, const BulkWords& words, app::InputKind kind, ManifestSide side) {
   if (words.files.empty() && words.manifest.empty()) {
-    return Error{ErrorCode::kUsage, "", std::string(words.name) + " is required; see meshlode " + verb.name + " --help"};
+    return Error{ErrorCode::kUsage, "",
+                 std::string(words.name) + " is required; see meshlode " + verb.name + " --help"};
   }
   BulkInputs inputs;
   std::error_code error;
   const bool is_named = words.files.size() == 1 && words.manifest.empty();
-  inputs.is_single = is_named && !std::filesystem::is_directory(words.files.front(), error) &&
-                     !app::is_pattern(words.files.front());
+  inputs.is_single =
+      is_named && !std::filesystem::is_directory(words.files.front(), error) && !app::is_pattern(words.files.front());
   for (const std::string& word : words.files) {
     TRY_LET(found, app::find_inputs(word, kind));
     for (const std::filesystem::path& file : found->files) {

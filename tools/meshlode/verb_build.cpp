@@ -30,6 +30,7 @@
 #include "build_options.h"
 #include "explain.h"
 #include "file_kind.h"
+#include "library_versions.h"
 #include "material_looks.h"
 #include "options.h"
 #include "output_name.h"
@@ -160,7 +161,8 @@ BatchFileNames names_of_files(const BuildCommand& command) {
   return {command.words.manifest, command.words.junit,
           command.words.depfile,  command.words.report,
           command.program,        app::settings_text(command.options.pipeline, command.options.import),
-          command.shard,          command.options.import.allow_outside};
+          command.shard,          command.options.import.allow_outside,
+          library_versions()};
 }
 
 /// The formats of the files beside the assets, and of the asset that is named.

@@ -72,7 +72,8 @@ int run_merge(const Verb& verb, std::span<char* const> args) {
   if (const Status there = app::check_assets(merged->results); !there) return print_error(there.error());
   if (const Status free = output_files().claim(output); !free) return print_error(free.error());
   if (const Status name = check_text_name("-o", output, {".json"}); !name) return print_error(name.error());
-  const std::string text = app::manifest_json(merged->results, merged->program, merged->settings, merged->exit_code);
+  const std::string text = app::manifest_json(merged->results, merged->program, merged->settings, merged->exit_code,
+                                              nullptr, true, merged->versions);
   if (const Status written = write_text(output, text); !written) return print_error(written.error());
   for (const app::JobResult& r : merged->results) {
     if (r.exit_code != 0) print_error({static_cast<ErrorCode>(r.exit_code), "", r.error});

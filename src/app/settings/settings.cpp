@@ -157,7 +157,7 @@ std::string join(const std::vector<std::string>& names) {
 class Settling {
  public:
   Settling() {
-    for (const SettingInfo& info : kSettings) words_[index_of(info.setting)] = {info.usual, "default"};
+    for (const SettingInfo& info : kSettings) words_[index_of(info.setting)] = {info.usual, kDefaultPlace};
   }
 
   Status add(const Saying& saying) {
@@ -257,6 +257,17 @@ builder::PipelineOptions options_of(const std::array<SettledWord, kSettingCount>
 
 std::span<const SettingInfo, kSettingCount> all_settings() {
   return kSettings;
+}
+
+std::optional<Setting> setting_of(std::string_view name) {
+  for (const SettingInfo& info : all_settings()) {
+    if (name == info.name) return info.setting;
+  }
+  return std::nullopt;
+}
+
+bool is_list(Setting setting) {
+  return setting == Setting::kKeep || setting == Setting::kDrop;
 }
 
 const SettingInfo& info_of(Setting setting) {

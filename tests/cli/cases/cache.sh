@@ -43,3 +43,13 @@ rm -r cache/record && printf 'in the way' >cache/record
 rm cache/record
 statuses --cache-limit 2KiB
 echo "within the limit: $(find cache/*/ -type f -printf '%s\n' | awk '{ sum += $1 } END { print (sum <= 2048) }')"
+echo "what the manifest says of the cache"
+mkdir told; cp "$DATA/crystal.glb" told/a.glb
+for preset in fast fast default; do
+  "$MESHLODE" build -q told/a.glb -O told/out --preset $preset --cache told/cache --manifest told/m.json; echo "exit $?"
+  grep -A 3 '"cache": ' told/m.json
+done
+"$MESHLODE" build -q told/a.glb -O told/out --manifest told/m.json; grep -A 3 '"cache": ' told/m.json
+# Linux tells how much memory a job took; what it does not tell is null.
+grep -cE '"peak_memory_bytes": ([1-9][0-9]{6,}|null),$' told/m.json
+"$JSON_CHECK" "$SCHEMAS/manifest.schema.json" <told/m.json

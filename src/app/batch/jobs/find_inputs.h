@@ -22,8 +22,9 @@ struct FoundInputs {
 /// Whether it has wildcards and no file has this very name.
 [[nodiscard]] bool is_pattern(const std::string& word);
 
-/// A path that exists is no pattern, and one that is no folder is itself, whatever it is called. What lies below a folder
-/// or matches a pattern is in byte order. Errors: kIo, also where nothing matches a pattern; an empty folder is none.
+/// A path that exists is no pattern, and one that is no folder is itself, whatever it is called. What lies below a
+/// folder or matches a pattern is in byte order. Errors: kIo, also where nothing matches a pattern; an empty folder is
+/// none.
 [[nodiscard]] Result<FoundInputs> find_inputs(const std::string& word, InputKind kind);
 
 }  // namespace meshlode::app
