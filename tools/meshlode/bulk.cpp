@@ -21,6 +21,7 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "base/try.h"
+#include "file_kind.h"
 #include "output_name.h"
 #include "outputs.h"
 #include "streams.h"
@@ -238,6 +239,7 @@ Result<BulkInputs> find_bulk_inputs(const Verb& verb, const BulkWords& words, ap
     }
   }
   if (!words.manifest.empty()) {
+    TRY(check_is_manifest(words.manifest));
     TRY_LET(manifest, app::read_manifest(words.manifest));
     if (const auto id = find_file_id(words.manifest)) output_files().keep(*id);
     for (const app::JobResult& r : manifest->results) inputs.files.push_back(input_of(r, side));
