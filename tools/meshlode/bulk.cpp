@@ -166,8 +166,8 @@ FileOutcome work_on(const BulkVerb& verb, const BulkInput& input) {
 }
 
 BulkInput input_of(const app::JobResult& r, ManifestSide side) {
-  if (side == ManifestSide::kScenes) return {r.job.input.string(), {}, {}};
-  BulkInput input{r.job.output.string(), r.job.input.string(), {}};
+  if (side == ManifestSide::kScenes) return {r.job.input.string()};
+  BulkInput input{r.job.output.string(), r.job.input.string()};
   if (r.has_asset()) return input;
   input.exit_code = r.exit_code != 0 ? r.exit_code : static_cast<int>(ErrorCode::kIo);
   input.error = r.job.output.string() + ": no asset was made: " + (r.error.empty() ? "skipped" : r.error);
@@ -234,8 +234,9 @@ Result<BulkInputs> find_bulk_inputs(const Verb& verb, const BulkWords& words, ap
       is_named && !std::filesystem::is_directory(words.files.front(), error) && !app::is_pattern(words.files.front());
   for (const std::string& word : words.files) {
     TRY_LET(found, app::find_inputs(word, kind));
+    const bool is_found = std::filesystem::is_directory(word, error) || app::is_pattern(word);
     for (const std::filesystem::path& file : found->files) {
-      inputs.files.push_back({file.string(), {}, found->base.string()});
+      inputs.files.push_back({file.string(), {}, found->base.string(), is_found});
     }
   }
   if (!words.manifest.empty()) {

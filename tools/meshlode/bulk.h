@@ -37,8 +37,9 @@ struct FileOutcome {
 
 struct BulkInput {
   std::string path;
-  std::string source;  ///< of the manifest; empty: not known
-  std::string base;    ///< the folder below which it was found; empty: none
+  std::string source = {};  ///< of the manifest; empty: not known
+  std::string base = {};    ///< the folder below which it was found; empty: none, or the current one
+  bool is_found = false;    ///< below a folder or by a pattern
   /// A file of a manifest that no asset was made of, and why.
   int exit_code = 0;
   std::string error = {};

@@ -91,10 +91,12 @@ int run_cache(const Verb& verb, std::span<char* const> args) {
   OptionParser parser(verb);
   parser.add_positional("FOLDER", words.folder, "the folder of build's --cache (default: $MESHLODE_CACHE)", {});
   parser.group("What to do");
-  parser.add_flag("--stats", words.stats, "count entries and bytes, which is all that is done without another of these");
+  parser.add_flag("--stats", words.stats,
+                  "count entries and bytes, which is all that is done without another of these");
   parser.add_value("--trim SIZE", words.trim,
                    "remove the entries that were used longest ago until the rest has SIZE, such as 20GiB");
-  parser.add_flag("--verify", words.verify, "hash every entry again and remove broken ones; exit with 6 if there are any");
+  parser.add_flag("--verify", words.verify,
+                  "hash every entry again and remove broken ones; exit with 6 if there are any");
   parser.add_flag("--clear", words.clear, "remove all entries");
   parser.group("Output");
   add_output_options(parser, words.out);

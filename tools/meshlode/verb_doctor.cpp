@@ -158,7 +158,10 @@ int run_doctor(const Verb& verb, std::span<char* const> args) {
   }
   const auto inputs = find_bulk_inputs(verb, bulk, app::InputKind::kScenesAndAssets, ManifestSide::kAssets);
   if (!inputs) return print_error(inputs.error());
-  if (inputs->is_single) return examine_file(inputs->files.front(), command).print();
+  if (inputs->is_single) {
+    const JobLimit limit(bulk.jobs);
+    return examine_file(inputs->files.front(), command).print();
+  }
   return run_bulk({"doctor",
                    {{"high", 4}, {"medium", 6}, {"low", 4}},
                    [&](const BulkInput& input) { return examine_file(input, command); }},

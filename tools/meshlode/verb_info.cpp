@@ -188,7 +188,10 @@ int run_info(const Verb& verb, std::span<char* const> args) {
   if (const Status sane = check_page_options(command.page); !sane) return print_error(sane.error());
   const auto inputs = find_bulk_inputs(verb, bulk, app::InputKind::kAssets, ManifestSide::kAssets);
   if (!inputs) return print_error(inputs.error());
-  if (inputs->is_single) return describe_file(inputs->files.front(), command).print(command.report);
+  if (inputs->is_single) {
+    const JobLimit limit(bulk.jobs);
+    return describe_file(inputs->files.front(), command).print(command.report);
+  }
   if (command.page.path) return print_error({ErrorCode::kUsage, "--html", "give one asset"});
   if (output.format != "text" && !output.json()) {
     return print_error({ErrorCode::kUsage, "--format", output.format + " is of one asset; json takes several"});

@@ -106,6 +106,7 @@ int run_validate(const Verb& verb, std::span<char* const> args) {
                      true},
                     inputs->files, bulk, output);
   }
+  const JobLimit limit(bulk.jobs);
   FileOutcome out = validate_file(inputs->files.front(), output);
   if (output.json()) {
     JsonWriter json;

@@ -192,8 +192,11 @@ struct VerifyCommand {
 /// directly in it, under the name that the asset has of it.
 std::string source_below(const std::string& folder, const BulkInput& input, const run::Asset& asset) {
   namespace fs = std::filesystem;
-  const fs::path inner =
-      input.base.empty() ? fs::path() : fs::path(input.path).lexically_relative(input.base).parent_path();
+  fs::path inner;
+  if (input.is_found) {
+    inner =
+        (input.base.empty() ? fs::path(input.path) : fs::path(input.path).lexically_relative(input.base)).parent_path();
+  }
   return (folder / inner / fs::path(app::read_meta(asset.meta_json()).source_file).filename()).string();
 }
 

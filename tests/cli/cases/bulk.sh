@@ -13,6 +13,7 @@ same verify --manifest out/manifest.json --quick
 run verify out --source in --quick
 run verify out/a.lode out/deep/b.lode --source in --quick
 run verify 'out/**/*.lode' --source in --quick --quiet
+(cd out && run verify '**/*.lode' --source ../in --quick)
 run verify out/deep/c.lode out/a.lode --quick
 run verify out/deep/c.lode out/a.lode --quick --source in/a.glb
 run verify out --source in --gpu
