@@ -43,7 +43,7 @@ constexpr std::uint64_t kMemoryPerByte = 32;
 constexpr std::uint64_t kMemoryOfProcess = std::uint64_t{32} << 20U;  ///< 10 MiB measured, and stacks of threads
 
 std::string shown_name(const BulkInput& input) {
-  return input_name(input.path);
+  return input_name(input.path.empty() ? input.source : input.path);
 }
 
 /// The end of a name that is too long for its column: of paths it is the end that differs.

@@ -63,3 +63,15 @@ sed 's/time="[0-9.]*"/time="T"/g' out/v.xml
 run validate out/a.lode --junit out/a.lode
 run verify out/a.lode --source in/a.glb --quick --junit verify.xml --quiet
 grep -c '<testcase' verify.xml
+echo "two folders"
+"$MESHLODE" build -q in/a.glb in/deep/c.glb -O golden --preset fast --error-tier qem; mkdir golden/deep; mv golden/c.lode golden/deep/c.lode
+cp out/a.lode golden/lost.lode; rm -f out/*.xml out/bad.lode out/*img*
+run compare golden out
+same compare golden out --fail-if 'file_bytes.ratio>1.01'
+run compare golden out --fail-if 'file_bytes.ratio>1.01' --quiet --junit compare.xml
+"$MESHLODE" repack -q golden/a.lode -o out/a.lode --codec none
+run compare golden out --fail-if 'file_bytes.ratio>1.01'
+run compare golden out --render --size 64x48 --fail-if 'picture.psnr<99' --quiet
+json bulk compare golden out --format json
+run compare empty empty
+run compare golden/a.lode out/a.lode --junit x.xml
