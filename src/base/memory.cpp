@@ -87,4 +87,12 @@ std::uint64_t resident_memory() {
   return system::resident_memory();
 }
 
+bool restart_peak_memory() {
+  return system::restart_peak_memory();
+}
+
+std::uint64_t peak_memory() {
+  return system::peak_memory();
+}
+
 }  // namespace meshlode

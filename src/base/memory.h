@@ -21,4 +21,9 @@ void give_back_freed_memory();
 /// Bytes of this process that are in memory now; 0 where it cannot be told.
 [[nodiscard]] std::uint64_t resident_memory();
 
+/// The most of it that was in memory at a time since restart_peak_memory(), which is false where the system cannot do
+/// that; 0 where it cannot be told. Linux has one peak for the whole process.
+[[nodiscard]] bool restart_peak_memory();
+[[nodiscard]] std::uint64_t peak_memory();
+
 }  // namespace meshlode

@@ -72,6 +72,10 @@ void remove_unlocked(const std::filesystem::path& path);
 [[nodiscard]] std::optional<std::uint64_t> memory_left();
 /// Bytes of this process that are in memory now; 0 where it cannot be told.
 [[nodiscard]] std::uint64_t resident_memory();
+/// From here on peak_memory() is the most that was resident since; false where the system cannot do that.
+[[nodiscard]] bool restart_peak_memory();
+/// 0 where it cannot be told.
+[[nodiscard]] std::uint64_t peak_memory();
 /// Where the allocator keeps what was freed and can be told to give it back.
 void give_back_freed_memory();
 

@@ -9,8 +9,10 @@
 #include <sys/stat.h>
 #include <unistd.h>
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <string>
 #ifdef __GLIBC__
 #include <malloc.h>
 #endif
@@ -169,6 +171,19 @@ std::uint64_t resident_memory() {
   std::uint64_t pages = 0, resident = 0;
   if (!(in >> pages >> resident)) return 0;
   return resident * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
+}
+
+bool restart_peak_memory() {
+  std::ofstream out("/proc/self/clear_refs");
+  return static_cast<bool>(out << "5" << std::flush);  // proc(5): the peak starts anew from what is resident now
+}
+
+std::uint64_t peak_memory() {
+  std::ifstream in("/proc/self/status");
+  for (std::string line; std::getline(in, line);) {
+    if (line.starts_with("VmHWM:")) return std::strtoull(line.c_str() + 6, nullptr, 10) * 1024;
+  }
+  return 0;
 }
 
 void give_back_freed_memory() {

@@ -73,6 +73,14 @@ std::uint64_t resident_memory() {
   return std::uint64_t{__builtin_wasm_memory_size(0)} << 16U;  // pages of 64 KiB
 }
 
+bool restart_peak_memory() {
+  return false;
+}
+
+std::uint64_t peak_memory() {
+  return 0;
+}
+
 void give_back_freed_memory() {}
 
 }  // namespace meshlode::system

@@ -195,6 +195,14 @@ std::uint64_t resident_memory() {
   return counters.WorkingSetSize;
 }
 
+bool restart_peak_memory() {
+  return false;  // Windows keeps the peak of the whole process alone
+}
+
+std::uint64_t peak_memory() {
+  return 0;
+}
+
 void give_back_freed_memory() {}
 
 }  // namespace meshlode::system

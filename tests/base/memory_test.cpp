@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -82,6 +83,19 @@ TEST(Memory, ThisMachineSaysSomething) {
   const auto available = available_memory();
   ASSERT_TRUE(available);
   EXPECT_GT(*available, 0u);
+}
+
+// What was given back before does not count, what is there for a moment does.
+TEST(Memory, ThePeakStartsAnew) {
+  constexpr std::size_t kBytes = std::size_t{64} << 20U;
+  const auto touch = [] { return std::vector<char>(kBytes, 1).back(); };
+  EXPECT_EQ(touch(), 1);
+  give_back_freed_memory();
+  if (!restart_peak_memory()) GTEST_SKIP() << "this system keeps one peak";
+  EXPECT_LT(peak_memory(), resident_memory() + kBytes / 2);
+  const std::uint64_t before = resident_memory();
+  EXPECT_EQ(touch(), 1);
+  EXPECT_GE(peak_memory(), before + kBytes - kBytes / 8);
 }
 
 }  // namespace

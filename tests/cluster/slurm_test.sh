@@ -206,7 +206,8 @@ within 60 is_over "$merge" || fail "the second merge is not over"
 [ "$(grep -c -- ' --jobs 1 --shard ./4 ' "$work/words")" = 6 ] || fail "threads: $(cat "$work/words")"
 
 # Seconds are the machine's, and whether an asset was built or taken from the cache depends on what was killed when.
-same() { sed -E -e 's/^(      "seconds": ).*/\1S,/' -e 's/^(      "status": ")(cached|unchanged)"/\1built"/' "$1"; }
+same() { sed -E -e 's/^(      "(seconds|processor_seconds|peak_memory_bytes)": ).*/\1M,/' \
+  -e 's/^(        "(use|reason|meshes)": ).*/\1C/' -e 's/^(      "status": ")(cached|unchanged)"/\1built"/' "$1"; }
 "$json_check" "$repository/docs/schemas/manifest.schema.json" <"$state"/manifest.json || fail "the manifest's schema"
 diff <(same ../local/manifest.json) <(same "$state"/manifest.json) || fail "the manifest is not that of a local batch"
 diff -r ../local/out out || fail "the assets are not those of a local batch"

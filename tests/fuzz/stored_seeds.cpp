@@ -62,6 +62,12 @@ std::vector<app::JobResult> sample_results() {
   results[0].facts.bytes = 1000;
   results[0].asset_hash.fill(7);
   results[0].files = sample_files();
+  app::SettingLayer layer{"meshlode.json", ErrorCode::kInvalid, {}, {}};
+  layer[app::Setting::kKeep] = "NORMAL,COLOR_0";
+  layer.mesh_rules.push_back({"rock*", layer.words});
+  results[0].settings = app::effective_settings(*app::settle({&layer, 1}), {&layer, 1});
+  results[0].cache = app::CacheUse::kMiss;
+  results[0].reason = "not built before";
   results[1].job = {"in/b.gltf", "out/b.lode"};
   results[1].status = app::JobStatus::kFailed;
   results[1].exit_code = 3;

@@ -87,8 +87,8 @@ void BatchFiles::write_both(const Write& write) {
   const int worst = std::max(app::worst_exit_code(results_), static_cast<int>(ErrorCode::kIo));
   const app::ShardPlan* shard = names_.shard ? &*names_.shard : nullptr;
   if (is_manifest_early_) {
-    is_manifest_early_ =
-        write(names_.manifest, app::manifest_json(results_, names_.program, names_.settings, worst, shard, false));
+    is_manifest_early_ = write(names_.manifest, app::manifest_json(results_, names_.program, names_.settings, worst,
+                                                                   shard, false, names_.versions));
   }
   if (is_junit_early_) is_junit_early_ = write(names_.junit, app::junit_xml(results_));
 }
@@ -166,7 +166,8 @@ int BatchFiles::finish(const std::vector<app::JobResult>& results, const std::st
   const app::ShardPlan* shard = names_.shard ? &*names_.shard : nullptr;
   const auto junit = [&] { return app::junit_xml(results); };
   const auto manifest = [&] {
-    return app::manifest_json(results, names_.program, names_.settings, app::worst_exit_code(results), shard);
+    return app::manifest_json(results, names_.program, names_.settings, app::worst_exit_code(results), shard, true,
+                              names_.versions);
   };
   const bool has_junit = is_wanted(names_.junit), has_manifest = is_wanted(names_.manifest);
   bool is_junit_early = false, is_manifest_early = false;

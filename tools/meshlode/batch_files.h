@@ -20,6 +20,7 @@
 #include "app/batch/jobs/job_result.h"
 #include "app/batch/jobs/jobs.h"
 #include "app/batch/shard/partition.h"
+#include "app/batch/tell/tell.h"
 #include "base/hash.h"
 
 namespace meshlode::cli {
@@ -31,6 +32,7 @@ struct BatchFileNames {
   std::string settings;  ///< app::settings_text()
   std::optional<app::ShardPlan> shard;
   std::vector<std::filesystem::path> allow_outside = {};  ///< scene::ImportOptions'
+  app::Versions versions = {};
 };
 
 class BatchFiles {

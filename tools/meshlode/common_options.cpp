@@ -75,6 +75,13 @@ Result<std::uint64_t> parse_max_decoded(const std::string& size) {
   return *bytes;
 }
 
+Result<std::uint64_t> parse_max_memory(const std::string& text) {
+  if (text == "auto") return std::uint64_t{0};
+  const auto bytes = parse_byte_size(text);
+  if (bytes && *bytes > 0) return *bytes;
+  return wrong_size("--max-memory", text, "auto or a size above 0, such as 8GiB or 8GB");
+}
+
 void add_output_options(OptionParser& parser, OutputOptions& options, const std::vector<std::string>& more_formats) {
   std::vector<std::string> formats{"text", "json"};
   formats.insert(formats.end(), more_formats.begin(), more_formats.end());

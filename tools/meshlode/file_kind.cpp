@@ -55,6 +55,15 @@ Status check_may_be_asset(const std::string& path) {
                    "'meshlode doctor'"};
 }
 
+Status check_is_manifest(const std::string& path, const std::string& writer) {
+  const SeenFile seen = look_at_file(path);
+  std::string name = seen.name;
+  if (seen.form == FileForm::kEmpty) return Error{ErrorCode::kInvalid, path, "the file is empty"};
+  if (seen.form == FileForm::kAsset) name = "a .lode asset";
+  if (name.empty()) return Ok{};
+  return Error{ErrorCode::kInvalid, path, "this is " + name + ", not a manifest; '" + writer + "' writes one"};
+}
+
 Result<run::Asset> open_asset(const std::string& path, std::uint64_t max_decoded) {
   TRY(check_may_be_asset(path));
   return run::Asset::open(path, max_decoded);

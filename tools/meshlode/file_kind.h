@@ -25,6 +25,11 @@ struct SeenFile {
 /// Error: kInvalid, for a scene, an empty file, and what does not begin as an asset does, named as what they are.
 [[nodiscard]] Status check_may_be_asset(const std::string& path);
 
+/// Error: kInvalid, for a scene, an asset and an empty file, named as what they are. `writer`: the command that
+/// writes one.
+[[nodiscard]] Status check_is_manifest(const std::string& path,
+                                       const std::string& writer = "meshlode build --manifest");
+
 /// run::Asset::open, with that error first.
 [[nodiscard]] Result<run::Asset> open_asset(const std::string& path,
                                             std::uint64_t max_decoded = run::kDefaultMaxDecoded);

@@ -66,7 +66,7 @@ std::string jpeg_version() {
 #endif
 }
 
-std::vector<LibraryVersion> library_versions() {
+std::vector<LibraryVersion> list_libraries() {
   return {
       {"Boost", boost_version(), "exact integers"},
       {"CGAL", MESHLODE_TEXT(CGAL_VERSION), "enclosing balls, repair, dented polygons"},
@@ -109,10 +109,16 @@ std::string version_text() {
   append_format(text, "compiler        %s\n", compiler());
   append_format(text, "format version  %u\n", format::kVersion);
   text += "\nlibrary         version          for\n";
-  for (const LibraryVersion& library : library_versions()) {
+  for (const LibraryVersion& library : list_libraries()) {
     append_format(text, "%-15s %-16s %s\n", library.name, library.version.c_str(), library.used_for);
   }
   return text;
+}
+
+app::Versions library_versions() {
+  app::Versions versions{{"format", std::to_string(format::kVersion)}, {"compiler", compiler()}};
+  for (const LibraryVersion& library : list_libraries()) versions.emplace_back(library.name, library.version);
+  return versions;
 }
 
 }  // namespace meshlode::cli

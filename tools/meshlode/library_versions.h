@@ -4,10 +4,15 @@
 
 #include <string>
 
+#include "app/batch/tell/tell.h"
+
 namespace meshlode::cli {
 
 /// The first line is program_version(); then build id, compiler and format, and a table of libraries. A library that is
 /// loaded is asked for its version; others have that of their headers.
 [[nodiscard]] std::string version_text();
+
+/// Name and version of each library of that table, of the format, and of the compiler.
+[[nodiscard]] app::Versions library_versions();
 
 }  // namespace meshlode::cli

@@ -213,8 +213,9 @@ void OptionParser::add_positional(const char* name, std::optional<std::string>& 
                                   const std::vector<std::string>& choices) {
   state_->add(name, target, help, choices);
 }
-void OptionParser::add_positionals(const char* name, std::vector<std::string>& target, const char* help) {
-  state_->add(name, target, help, {}, true);
+void OptionParser::add_positionals(const char* name, std::vector<std::string>& target, const char* help,
+                                   bool is_required) {
+  state_->add(name, target, help, {}, is_required);
 }
 
 namespace {

@@ -49,8 +49,9 @@ class OptionParser {
   void add_values(const char* name, std::vector<std::string>& target, const char* help);
   void add_positional(const char* name, std::string& target, const char* help);  ///< exactly one
   void add_positional(const char* name, std::optional<std::string>& target, const char* help,
-                      const std::vector<std::string>& choices);                                ///< one or none
-  void add_positionals(const char* name, std::vector<std::string>& target, const char* help);  ///< one or more
+                      const std::vector<std::string>& choices);  ///< one or none
+  /// One or more, or where `is_required` is false any number.
+  void add_positionals(const char* name, std::vector<std::string>& target, const char* help, bool is_required = true);
 
   /// Nothing: go on. A value: leave with this exit code (help was printed, a usage error, or the verb was only asked
   /// for its options: Verb::listed_options).
@@ -72,6 +73,9 @@ void add_output_options(OptionParser& parser, OutputOptions& options,
 
 /// `-j,--jobs N`: threads; 0 (the default) is one per core.
 void add_jobs_option(OptionParser& parser, std::uint32_t& jobs);
+
+/// `--max-memory SIZE` in bytes; 0 for "auto": what the machine has. Error: kUsage.
+[[nodiscard]] Result<std::uint64_t> parse_max_memory(const std::string& text);
 
 /// `--max-decoded SIZE`: what images and geometry may take decoded.
 void add_max_decoded_option(OptionParser& parser, std::string& size);

@@ -45,6 +45,8 @@ extern const Verb kRenderVerb;
 extern const Verb kExtractVerb;
 extern const Verb kRepackVerb;
 extern const Verb kMeasureVerb;
+extern const Verb kReportVerb;
+extern const Verb kCacheVerb;
 extern const Verb kCompletionVerb;
 extern const Verb kManVerb;
 extern const Verb kStudyVerb;  ///< listed nowhere: for studies (docs/guides/sweep.md)

@@ -21,7 +21,6 @@
 #include "app/batch/shard/read_manifest.h"
 #include "app/batch/tell/tell.h"
 #include "app/settings/settings.h"
-#include "base/byte_size.h"
 #include "base/printable.h"
 #include "base/try.h"
 #include "batch_files.h"
@@ -31,6 +30,7 @@
 #include "build_options.h"
 #include "explain.h"
 #include "file_kind.h"
+#include "library_versions.h"
 #include "material_looks.h"
 #include "options.h"
 #include "output_name.h"
@@ -161,7 +161,8 @@ BatchFileNames names_of_files(const BuildCommand& command) {
   return {command.words.manifest, command.words.junit,
           command.words.depfile,  command.words.report,
           command.program,        app::settings_text(command.options.pipeline, command.options.import),
-          command.shard,          command.options.import.allow_outside};
+          command.shard,          command.options.import.allow_outside,
+          library_versions()};
 }
 
 /// The formats of the files beside the assets, and of the asset that is named.
@@ -245,14 +246,6 @@ struct LimitWords {
   std::string max_memory = "auto", max_decoded = kDefaultMaxDecodedText;
   std::vector<std::string> allow_outside;
 };
-
-/// `--max-memory` in bytes; 0: what the machine has. Error: kUsage.
-Result<std::uint64_t> parse_max_memory(const std::string& text) {
-  if (text == "auto") return std::uint64_t{0};
-  const auto bytes = parse_byte_size(text);
-  if (bytes && *bytes > 0) return *bytes;
-  return wrong_size("--max-memory", text, "auto or a size above 0, such as 8GiB or 8GB");
-}
 
 Status set_options(const BuildWords& words, const LimitWords& limits, app::BatchOptions& options) {
   const app::SettingLayer given = given_settings(words);

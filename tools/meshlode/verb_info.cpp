@@ -6,9 +6,12 @@
 #include "app/compare/stored_bytes.h"
 #include "app/page/viewer_page.h"
 #include "app/report/info.h"
+#include "base/append_format.h"
 #include "base/byte_size.h"
+#include "base/printable.h"
 #include "base/try.h"
 #include "budget_options.h"
+#include "bulk.h"
 #include "file_kind.h"
 #include "info_page.h"
 #include "options.h"
@@ -78,60 +81,127 @@ Status write_page(const run::Asset& asset, const std::string& path, const std::o
   return write_output(*options.path, *page);
 }
 
-int run_info(const Verb& verb, std::span<char* const> args) {
-  std::string path, report = kStream;
+struct InfoCommand {
+  std::vector<app::Condition> budget;
   std::optional<std::string> fail_if;
+  std::string report = kStream;
   PageOptions page;
   OutputOptions output;
-  bool list_stuck = false;
-  OptionParser parser(verb);
-  parser.add_positional("FILE", path, "a .lode asset, or - for stdin");
-  parser.group("Output");
-  add_report_option(parser, report);
-  add_output_options(parser, output, {"csv", "markdown"});
-  parser.add_flag("--stuck", list_stuck, "list every stuck group with its reason ('extract --stuck' shows them)");
-  add_page_options(parser, page);
-  add_budget_option(parser, fail_if, "--format json", "totals.clusters>5000, any(meshes).stuck_groups>0");
-  if (const auto exit_code = parser.parse(args)) return *exit_code;
-  const auto budget = read_budget_option(fail_if, app::info_schema());
-  if (!budget) return print_error(budget.error());
-  if (const Status sane = check_page_options(page); !sane) return print_error(sane.error());
-  const Result<std::string> file = input_path(path);
-  if (!file) return print_error(file.error());
-  path = input_name(path);
+  bool list_stuck = false, is_single = true;
+};
+
+/// What a file is there to be written, and not what was read.
+Status claim_outputs(const InfoCommand& command) {
+  TRY(claim_page(command.page));
+  return claim_figures(command.report, command.output.format);
+}
+
+/// The row of several assets.
+std::vector<std::string> row_of(const run::Asset& asset, const app::AssetInfo& info) {
+  std::string per_triangle = "-";
+  if (info.source_triangles > 0) {
+    per_triangle.clear();
+    append_format(per_triangle, "%.2f",
+                  static_cast<double>(info.geometry_bytes) / static_cast<double>(info.source_triangles));
+  }
+  return {grouped_digits(info.source_triangles), grouped_digits(asset.bytes().size()), std::move(per_triangle),
+          grouped_digits(info.stuck_groups)};
+}
+
+FileOutcome describe_file(const BulkInput& input, const InfoCommand& command) {
+  FileOutcome out;
+  const auto fail = [&](Error error) {
+    out.fail(std::move(error));
+    return out;
+  };
+  const Result<std::string> file = input_path(input.path);
+  if (!file) return fail(file.error());
+  const std::string path = input_name(input.path);
   const Result<run::Asset> asset = open_asset(*file);
-  if (!asset) return print_error(asset.error());
+  if (!asset) return fail(asset.error());
   if (const auto id = asset->file_id()) output_files().keep(*id);
-  if (const Status free = claim_page(page); !free) return print_error(free.error());
-  if (const Status free = claim_figures(report, output.format); !free) return print_error(free.error());
+  if (command.is_single) {
+    if (const Status free = claim_outputs(command); !free) return fail(free.error());
+  }
   app::AssetInfo info = app::describe_asset(*asset);
   // Whatever is printed, every page and image is read: an exit code of 0 says that the asset is whole.
   Result<app::ByteMap> byte_map = app::map_bytes(*asset);
   const bool has_map = static_cast<bool>(byte_map);
   const Status sound = has_map ? app::check_stored_bytes(*asset) : Status(byte_map.error());
   if (has_map) info.byte_map = std::move(*byte_map);
-  int exit_code = 0;
   if (!sound) {
     Error error = sound.error();
     error.where = path + ": " + error.where;
-    exit_code = print_error(error);  // what the tables say is still true
+    out.fail(std::move(error));  // what the tables say is still true
   }
   if (has_map) {
-    const Status written = write_page(*asset, path, info.byte_map, page);
-    if (!written) return print_error(written.error());
+    const Status written = write_page(*asset, path, info.byte_map, command.page);
+    if (!written) {
+      out.errors.push_back(written.error());
+      out.exit_code = static_cast<int>(written.error().code);
+      return out;
+    }
   }
   // With a budget or a page it is these that are asked for, and a page on stdout leaves no place for more.
-  const bool is_silent = (output.quiet && output.format == "text" && (fail_if || page.path)) ||
-                         (page.path && *page.path == kStream && report == kStream);
-  if (!is_silent) {
-    const Status written = write_output(report, describe(*asset, info, output.format, list_stuck));
-    if (!written) return print_error(written.error());
-  }
+  const PageOptions& page = command.page;
+  const OutputOptions& output = command.output;
+  const bool is_silent = (output.quiet && output.format == "text" && (command.fail_if || page.path)) ||
+                         (page.path && *page.path == kStream && command.report == kStream);
+  if (!is_silent) out.text = describe(*asset, info, output.format, command.list_stuck);
+  out.cells = row_of(*asset, info);
   // Of a figure that is not known nobody says that it is within its limit.
-  if (budget->empty() || (!has_map && app::mentions(*budget, "byte_map"))) return exit_code;
-  const auto broken = app::judge_budget(*budget, app::info_json(*asset, info, true));
-  const int judged = broken ? print_broken(path, *broken) : print_error(broken.error());
-  return exit_code != 0 ? exit_code : judged;
+  if (command.budget.empty() || (!has_map && app::mentions(command.budget, "byte_map"))) return out;
+  const auto broken = app::judge_budget(command.budget, app::info_json(*asset, info, true));
+  if (!broken) {
+    out.late_errors.push_back(broken.error());
+  } else {
+    for (const app::BrokenCondition& one : *broken) {
+      out.late_errors.push_back({ErrorCode::kCheckFailed, path, one.message()});
+    }
+  }
+  if (out.exit_code == 0 && !out.late_errors.empty()) out.exit_code = static_cast<int>(out.late_errors.front().code);
+  return out;
+}
+
+int run_info(const Verb& verb, std::span<char* const> args) {
+  InfoCommand command;
+  BulkWords bulk;
+  OutputOptions& output = command.output;
+  OptionParser parser(verb);
+  add_bulk_inputs(parser, bulk, "FILE",
+                  ".lode assets, folders of them, or patterns such as 'out/**/*.lode'; - for stdin",
+                  "describe the assets of this manifest of a build (default: none)");
+  parser.group("Output");
+  add_report_option(parser, command.report);
+  add_output_options(parser, output, {"csv", "markdown"});
+  parser.add_flag("--stuck", command.list_stuck,
+                  "list every stuck group with its reason ('extract --stuck' shows them)");
+  add_page_options(parser, command.page);
+  add_budget_option(parser, command.fail_if, "--format json", "totals.clusters>5000, any(meshes).stuck_groups>0");
+  add_bulk_outputs(parser, bulk);
+  parser.group("Resources");
+  add_bulk_resources(parser, bulk);
+  if (const auto exit_code = parser.parse(args)) return *exit_code;
+  auto budget = read_budget_option(command.fail_if, app::info_schema());
+  if (!budget) return print_error(budget.error());
+  command.budget = std::move(*budget);
+  if (const Status sane = check_page_options(command.page); !sane) return print_error(sane.error());
+  const auto inputs = find_bulk_inputs(verb, bulk, app::InputKind::kAssets, ManifestSide::kAssets);
+  if (!inputs) return print_error(inputs.error());
+  if (inputs->is_single) {
+    const JobLimit limit(bulk.jobs);
+    return describe_file(inputs->files.front(), command).print(command.report);
+  }
+  if (command.page.path) return print_error({ErrorCode::kUsage, "--html", "give one asset"});
+  if (output.format != "text" && !output.json()) {
+    return print_error({ErrorCode::kUsage, "--format", output.format + " is of one asset; json takes several"});
+  }
+  if (const Status free = claim_outputs(command); !free) return print_error(free.error());
+  command.is_single = false;
+  return run_bulk({"info",
+                   {{"triangles", 11}, {"bytes", 13}, {"B/tri", 7}, {"stuck", 5}},
+                   [&](const BulkInput& input) { return describe_file(input, command); }},
+                  inputs->files, bulk, output, command.report);
 }
 
 }  // namespace
@@ -141,7 +211,7 @@ const Verb kInfoVerb{"info", "show what an asset contains: totals, levels, mater
                      "materials, and what the bytes are spent on. All pages and images are read and checked: exit "
                      "status 0 says that the file is not damaged.\n\n"
                      "With --fail-if the figures become limits that a pipeline can check. With --html it writes a "
-                     "self-contained page for a browser.",
+                     "self-contained page for a browser. Of several assets each has a row.",
                      "meshlode info scene.lode\n"
                      "  meshlode info scene.lode --format json\n"
                      "  meshlode info scene.lode --html scene.html\n"

@@ -36,16 +36,6 @@ void keep_files(const std::vector<app::JobResult>& results) {
   }
 }
 
-/// Errors: kInvalid, what another file is.
-Status check_is_manifest(const std::string& path) {
-  const SeenFile seen = look_at_file(path);
-  std::string name = seen.name;
-  if (seen.form == FileForm::kEmpty) return Error{ErrorCode::kInvalid, path, "the file is empty"};
-  if (seen.form == FileForm::kAsset) name = "a .lode asset";
-  if (name.empty()) return Ok{};
-  return Error{ErrorCode::kInvalid, path, "this is " + name + ", not a manifest; 'meshlode build --shard' writes one"};
-}
-
 int run_merge(const Verb& verb, std::span<char* const> args) {
   std::vector<std::string> paths;
   std::string output;
@@ -61,7 +51,7 @@ int run_merge(const Verb& verb, std::span<char* const> args) {
   std::vector<app::ShardManifest> shards;
   for (const std::string& path : paths) {
     keep(path);
-    if (const Status kind = check_is_manifest(path); !kind) return print_error(kind.error());
+    if (const Status kind = check_is_manifest(path, "meshlode build --shard"); !kind) return print_error(kind.error());
     auto manifest = app::read_manifest(path);
     if (!manifest) return print_error(manifest.error());
     shards.push_back({path, std::move(*manifest)});
@@ -72,7 +62,8 @@ int run_merge(const Verb& verb, std::span<char* const> args) {
   if (const Status there = app::check_assets(merged->results); !there) return print_error(there.error());
   if (const Status free = output_files().claim(output); !free) return print_error(free.error());
   if (const Status name = check_text_name("-o", output, {".json"}); !name) return print_error(name.error());
-  const std::string text = app::manifest_json(merged->results, merged->program, merged->settings, merged->exit_code);
+  const std::string text = app::manifest_json(merged->results, merged->program, merged->settings, merged->exit_code,
+                                              nullptr, true, merged->versions);
   if (const Status written = write_text(output, text); !written) return print_error(written.error());
   for (const app::JobResult& r : merged->results) {
     if (r.exit_code != 0) print_error({static_cast<ErrorCode>(r.exit_code), "", r.error});

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // plan: what a build of a scene will keep, and why, without building it.
+#include <algorithm>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <utility>
@@ -9,7 +11,9 @@
 #include "app/preview/scene_plan.h"
 #include "app/settings/settings.h"
 #include "base/json_writer.h"
+#include "base/printable.h"
 #include "build_options.h"
+#include "bulk.h"
 #include "explain.h"
 #include "material_looks.h"
 #include "measure_plan.h"
@@ -99,74 +103,121 @@ std::string plan_json(const scene::Scene& scene, const Planned& planned) {
   return json.text();
 }
 
-int run_plan(const Verb& verb, std::span<char* const> args) {
-  std::string path, report = kStream, max_decoded = kDefaultMaxDecodedText;
-  std::vector<std::string> allow_outside;
+struct PlanCommand {
+  std::string report = kStream;
   BuildWords words;
   MeasureOptions measure;
-  bool is_measured = false;
-  std::uint32_t jobs = 0;
+  std::uint64_t max_decoded = 0;
+  std::vector<std::filesystem::path> allow_outside;
   OutputOptions output;
+  bool is_measured = false, is_single = true;
+};
+
+Status claim_plan(const PlanCommand& command) {
+  return command.output.json() ? claim_report(command.report, {".json"}) : claim_report(command.report, {});
+}
+
+/// The row of several scenes.
+std::vector<std::string> row_of(const scene::Scene& scene, const app::ScenePlan& plan) {
+  std::uint64_t triangles = 0;
+  double bytes = 0.0;
+  for (const app::PlannedMesh& mesh : plan.meshes) {
+    triangles += mesh.triangles;
+    bytes += mesh.bytes;
+  }
+  return {grouped_digits(triangles), grouped_digits(plan.meshes.size()), grouped_digits(scene.instances.size()),
+          grouped_digits(static_cast<std::uint64_t>(std::clamp(bytes, 0.0, 0x1p63)))};
+}
+
+FileOutcome plan_file(const BulkInput& input, const PlanCommand& command, JobLimit* limit) {
+  FileOutcome out;
+  const std::string& path = input.path;
+  const auto fail = [&](Error error) {
+    out.fail(std::move(error));
+    return out;
+  };
+  const auto fail_in = [&](Error error) {
+    error.where = path + (error.where.empty() ? "" : ": ") + error.where;
+    return fail(std::move(error));
+  };
+  const auto layers = settings_for(command.words, path, input.base);
+  if (!layers) return fail(layers.error());
+  Result<app::Settled> settled = app::settle(*layers);
+  if (!settled) return fail(settled.error());
+  builder::PipelineOptions options = settled->options;
+  options.looks = &image_looks();
+
+  std::vector<FileId> files_read;
+  const Result<scene::Scene> scene = scene::import_scene(path, {.repair = options.repair,
+                                                                .scene = command.words.scene,
+                                                                .files_read = &files_read,
+                                                                .max_decoded = command.max_decoded,
+                                                                .may_lack_images = true,
+                                                                .allow_outside = command.allow_outside,
+                                                                .linear_colors = options.linear_colors});
+  if (!scene) return fail(scene.error());
+  output_files().keep(files_read);
+  const Status free = command.is_single ? claim_plan(command) : Status(Ok{});
+  if (!free) return fail(free.error());
+  auto meshes = app::settle_meshes(*layers, names_of_meshes(*scene));
+  if (!meshes) return fail_in(meshes.error());
+  for (const app::SettledMesh& mesh : *meshes) options.mesh_options.push_back(mesh.options);
+  Result<app::ScenePlan> plan = app::plan_scene(*scene, options);
+  if (!plan) return fail_in(plan.error());
+  Planned planned{std::move(*settled), std::move(*meshes), std::move(*plan), {}, {}};
+  planned.passes = plan_scene_passes(*scene, planned.scene, options.max_cluster_triangles);
+  if (command.is_measured) {
+    std::optional<Result<PlanMeasurement>> measured;
+    limit->run([&] { measured = measure_plan(*scene, options, command.measure); });
+    if (!*measured) return fail_in(measured->error());
+    planned.measured = std::move(**measured);
+  }
+  out.text = command.output.json() ? plan_json(*scene, planned) : plan_text(*scene, planned);
+  out.cells = row_of(*scene, planned.scene);
+  return out;
+}
+
+int run_plan(const Verb& verb, std::span<char* const> args) {
+  std::string max_decoded = kDefaultMaxDecodedText;
+  std::vector<std::string> allow_outside;
+  PlanCommand command;
+  BulkWords bulk;
   OptionParser parser(verb);
-  parser.add_positional("INPUT", path, "a .gltf, .glb, .ply, .obj or .stl scene");
+  add_bulk_inputs(parser, bulk, "INPUT", ".gltf, .glb, .ply, .obj or .stl scenes, folders of them, or patterns",
+                  "plan the scenes of this manifest of a build (default: none)");
   parser.group("Output");
-  add_report_option(parser, report);
-  add_output_options(parser, output);
-  parser.add_flag("--measure", is_measured,
+  add_report_option(parser, command.report);
+  add_output_options(parser, command.output);
+  parser.add_flag("--measure", command.is_measured,
                   "build with this plan and with --keep all, three times each, and compare both");
-  parser.add_value("--device NAME|INDEX", measure.device,
+  parser.add_value("--device NAME|INDEX", command.measure.device,
                    "Vulkan device of --measure, by index or part of its name (default: the first that can)");
-  add_build_options(parser, words);
+  add_bulk_outputs(parser, bulk);
+  add_build_options(parser, command.words);
   parser.group("Resources");
-  add_jobs_option(parser, jobs);
+  add_bulk_resources(parser, bulk);
   add_max_decoded_option(parser, max_decoded);
   add_allow_outside_option(parser, allow_outside);
   if (const auto exit_code = parser.parse(args)) return *exit_code;
   const Result<std::uint64_t> decoded = parse_max_decoded(max_decoded);
   if (!decoded) return print_error(decoded.error());
+  command.max_decoded = command.measure.max_decoded = *decoded;
   auto allowed = parse_allow_outside(allow_outside);
   if (!allowed) return print_error(allowed.error());
-  const auto layers = settings_for(words, path, {});
-  if (!layers) return print_error(layers.error());
-  Result<app::Settled> settled = app::settle(*layers);
-  if (!settled) return print_error(settled.error());
-  builder::PipelineOptions options = settled->options;
-  options.looks = &image_looks();
-
-  JobLimit limit(jobs);
-  std::vector<FileId> files_read;
-  const Result<scene::Scene> scene = scene::import_scene(path, {.repair = options.repair,
-                                                                .scene = words.scene,
-                                                                .files_read = &files_read,
-                                                                .max_decoded = *decoded,
-                                                                .may_lack_images = true,
-                                                                .allow_outside = std::move(*allowed),
-                                                                .linear_colors = options.linear_colors});
-  if (!scene) return print_error(scene.error());
-  output_files().keep(files_read);
-  const Status free = output.json() ? claim_report(report, {".json"}) : claim_report(report, {});
-  if (!free) return print_error(free.error());
-  const auto fail = [&](Error error) {
-    error.where = path + (error.where.empty() ? "" : ": ") + error.where;
-    return print_error(error);
-  };
-  auto meshes = app::settle_meshes(*layers, names_of_meshes(*scene));
-  if (!meshes) return print_error(meshes.error());
-  for (const app::SettledMesh& mesh : *meshes) options.mesh_options.push_back(mesh.options);
-  Result<app::ScenePlan> plan = app::plan_scene(*scene, options);
-  if (!plan) return fail(plan.error());
-  Planned planned{std::move(*settled), std::move(*meshes), std::move(*plan), {}, {}};
-  planned.passes = plan_scene_passes(*scene, planned.scene, options.max_cluster_triangles);
-  if (is_measured) {
-    measure.max_decoded = *decoded;
-    std::optional<Result<PlanMeasurement>> measured;
-    limit.run([&] { measured = measure_plan(*scene, options, measure); });
-    if (!*measured) return fail(measured->error());
-    planned.measured = std::move(**measured);
+  command.allow_outside = std::move(*allowed);
+  const auto inputs = find_bulk_inputs(verb, bulk, app::InputKind::kScenes, ManifestSide::kScenes);
+  if (!inputs) return print_error(inputs.error());
+  if (inputs->is_single) {
+    JobLimit limit(bulk.jobs);
+    return plan_file(inputs->files.front(), command, &limit).print(command.report);
   }
-  const std::string text = output.json() ? plan_json(*scene, planned) : plan_text(*scene, planned);
-  const Status written = write_output(report, text);
-  return written ? 0 : print_error(written.error());
+  if (command.is_measured) return print_error({ErrorCode::kUsage, "--measure", "give one scene: it has all threads"});
+  if (const Status free = claim_plan(command); !free) return print_error(free.error());
+  command.is_single = false;
+  return run_bulk({"plan",
+                   {{"triangles", 11}, {"meshes", 6}, {"instances", 9}, {"est. bytes", 13}},
+                   [&](const BulkInput& input) { return plan_file(input, command, nullptr); }},
+                  inputs->files, bulk, command.output, command.report);
 }
 
 }  // namespace
@@ -176,8 +227,9 @@ const Verb kPlanVerb{
     "Prints the settings and where each comes from, which attributes of each mesh are stored or left out and why, the "
     "features of the scene that the asset carries, and the passes that a GPU will run. Bytes are estimates.\n\n"
     "With --measure the scene is built twice, by the plan and with every attribute, and both are compared in bytes and "
-    "time.",
+    "time. Of several scenes each has a row.",
     "meshlode plan scene.glb\n"
+    "  meshlode plan scenes/ --max-memory 4GiB\n"
     "  meshlode plan scene.glb --measure --format json",
     run_plan};
 

@@ -5,6 +5,7 @@
 
 #include "base/file.h"
 #include "base/json_writer.h"
+#include "bulk.h"
 #include "file_kind.h"
 #include "findings.h"
 #include "judge/validate/rules.h"
@@ -43,54 +44,81 @@ std::string describe(const std::string& path, const judge::ValidationReport& rep
   return text;
 }
 
-int run_validate(const Verb& verb, std::span<char* const> args) {
-  std::vector<std::string> paths;
-  OutputOptions output;
-  OptionParser parser(verb);
-  parser.add_positionals("FILE", paths, "one or more .lode assets, or - for stdin");
-  parser.group("Output");
-  add_output_options(parser, output);
-  if (const auto exit_code = parser.parse(args)) return *exit_code;
-
-  int worst = 0;
-  std::string text;
+/// An entry of the document, which is a list for one file too.
+std::string to_json(const std::string& path, const judge::ValidationReport& report) {
   JsonWriter json;
   json.begin_object();
-  json.key("files");
-  json.begin_array();
-  for (const std::string& word : paths) {
-    const std::string path = input_name(word);
-    const Result<std::string> place = input_path(word);
-    if (!place) {
-      worst = std::max(worst, print_error(place.error()));
-      continue;
-    }
-    const Result<MappedFile> file = MappedFile::open(*place);
-    if (!file) {
-      worst = std::max(worst, print_error(file.error()));
-      continue;
-    }
-    const judge::ValidationReport report = judge::validate_asset(file->bytes());
-    if (report.finding_count > 0) worst = std::max(worst, is_no_asset(report) ? kInvalid : kCheckFailed);
-    if (is_no_asset(report)) {
-      if (const Status named = check_may_be_asset(*place); !named) print_error(named.error());
-    }
-    text += describe(path, report, output.quiet);
+  json.field("file", path);
+  json.field("valid", report.finding_count == 0);
+  json.field("finding_count", report.finding_count);
+  write_findings(json, report.findings);
+  json.array_field("checked", report.checked);
+  json.end_object();
+  return json.text();
+}
+
+FileOutcome validate_file(const BulkInput& input, const OutputOptions& output) {
+  FileOutcome out;
+  const std::string path = input_name(input.path);
+  const Result<std::string> place = input_path(input.path);
+  if (!place) {
+    out.fail(place.error());
+    return out;
+  }
+  const Result<MappedFile> file = MappedFile::open(*place);
+  if (!file) {
+    out.fail(file.error());
+    return out;
+  }
+  const judge::ValidationReport report = judge::validate_asset(file->bytes());
+  if (is_no_asset(report)) {
+    if (const Status named = check_may_be_asset(*place); !named) out.errors.push_back(named.error());
+  }
+  if (report.finding_count > 0) out.exit_code = is_no_asset(report) ? kInvalid : kCheckFailed;
+  out.text = output.json() ? to_json(path, report) : describe(path, report, output.quiet);
+  out.cells = {std::to_string(report.checked.size()), std::to_string(report.finding_count)};
+  for (const judge::Finding& finding : report.findings) {
+    out.details.push_back(finding.id + (finding.invariant.empty() ? "" : " (" + finding.invariant + ")") + ": " +
+                          finding.where + ": " + finding.detail);
+  }
+  return out;
+}
+
+int run_validate(const Verb& verb, std::span<char* const> args) {
+  BulkWords bulk;
+  OutputOptions output;
+  OptionParser parser(verb);
+  add_bulk_inputs(parser, bulk, "FILE",
+                  ".lode assets, folders of them, or patterns such as 'out/**/*.lode'; - for stdin",
+                  "check the assets of this manifest of a build (default: none)");
+  parser.group("Output");
+  add_output_options(parser, output);
+  add_bulk_outputs(parser, bulk);
+  parser.group("Resources");
+  add_bulk_resources(parser, bulk);
+  if (const auto exit_code = parser.parse(args)) return *exit_code;
+  const auto inputs = find_bulk_inputs(verb, bulk, app::InputKind::kAssets, ManifestSide::kAssets);
+  if (!inputs) return print_error(inputs.error());
+  if (!inputs->is_single) {
+    return run_bulk({"validate",
+                     {{"rules", 5}, {"findings", 8}},
+                     [&](const BulkInput& input) { return validate_file(input, output); },
+                     true},
+                    inputs->files, bulk, output);
+  }
+  const JobLimit limit(bulk.jobs);
+  FileOutcome out = validate_file(inputs->files.front(), output);
+  if (output.json()) {
+    JsonWriter json;
     json.begin_object();
-    json.field("file", path);
-    json.field("valid", report.finding_count == 0);
-    json.field("finding_count", report.finding_count);
-    write_findings(json, report.findings);
-    json.key("checked");
+    json.key("files");
     json.begin_array();
-    for (const std::string& id : report.checked) json.value(id);
+    if (!out.text.empty()) write_document(json, out.text, 2);
     json.end_array();
     json.end_object();
+    out.text = json.text();
   }
-  json.end_array();
-  json.end_object();
-  if (!print_out(output.json() ? json.text() : text)) return static_cast<int>(ErrorCode::kIo);
-  return worst;
+  return out.print();
 }
 
 }  // namespace

@@ -2,13 +2,16 @@
 #include <algorithm>
 #include <charconv>
 #include <cstdio>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "app/report/read_meta.h"
 #include "base/file.h"
 #include "base/json_writer.h"
+#include "bulk.h"
 #include "explain.h"
 #include "file_kind.h"
 #include "findings.h"
@@ -175,17 +178,101 @@ judge::VerifyReport report_other_source(const std::string& detail) {
   return report;
 }
 
+/// All that is asked of each asset.
+struct VerifyCommand {
+  SourceOptions source;
+  GpuOptions gpu;
+  judge::VerifyOptions checks;
+  OutputOptions output;
+  std::uint64_t max_decoded = 0;
+  bool is_source_folder = false;
+};
+
+/// Of several assets --source is a folder: below it a scene lies as its asset does below the folder that was given, or
+/// directly in it, under the name that the asset has of it.
+std::string source_below(const std::string& folder, const BulkInput& input, const run::Asset& asset) {
+  namespace fs = std::filesystem;
+  fs::path inner;
+  if (input.is_found) {
+    inner =
+        (input.base.empty() ? fs::path(input.path) : fs::path(input.path).lexically_relative(input.base)).parent_path();
+  }
+  return (folder / inner / fs::path(app::read_meta(asset.meta_json()).source_file).filename()).string();
+}
+
+/// The row of several assets, and what was found below it.
+void describe_row(const judge::VerifyReport& report, FileOutcome& out) {
+  const auto failed = std::count_if(report.checks.begin(), report.checks.end(),
+                                    [](const judge::VerifyReport::Check& check) { return check.failures > 0; });
+  out.cells = {std::to_string(report.checks.size()), std::to_string(failed), std::to_string(report.finding_count)};
+  for (const judge::Finding& finding : report.findings) {
+    out.details.push_back(finding.id + (finding.invariant.empty() ? "" : " (" + finding.invariant + ")") + ": " +
+                          finding.where + ": " + finding.detail);
+  }
+}
+
+FileOutcome verify_file(const BulkInput& input, const VerifyCommand& command) {
+  FileOutcome out;
+  const auto fail = [&](Error error) {
+    out.fail(std::move(error));
+    return out;
+  };
+  const std::string& path = input.path;
+  SourceOptions source_options = command.source;
+  if (!input.source.empty()) source_options.path = input.source;
+  judge::VerifyOptions options = command.checks;
+  const GpuOptions& gpu_options = command.gpu;
+  const Status given = check_source_options("verify", path, source_options);
+  if (!given) return fail(given.error());
+  Result<run::Asset> asset = open_asset(path, command.max_decoded);
+  if (!asset) return fail(asset.error());
+  if (const auto id = asset->file_id()) output_files().keep(*id);
+  if (command.is_source_folder && input.source.empty()) {
+    source_options.path = source_below(command.source.path, input, *asset);
+  }
+  if (gpu_options.is_on) {  // asked before anything is measured, and chosen by verify_with_gpu() alone
+    if (const Status chosen = choose_promise(gpu_options.promise, *asset); !chosen) return fail(chosen.error());
+    if (const Status back = asset->choose(format::Promise::kPosition); !back) return fail(back.error());
+  }
+  if (const Status size = check_size(*asset); !size) {
+    return fail({size.error().code, path + ": " + size.error().where, size.error().detail});
+  }
+  if (gpu_options.is_explained) out.notes = describe_recorded_plan(*asset);
+  if (gpu_options.is_on) std::fputs(std::exchange(out.notes, {}).c_str(), stderr);  // before what the device says
+  const Result<scene::Scene> source = import_source(*asset, source_options, command.max_decoded);
+  if (!source) return fail(source.error());
+  const Result<MappedFile> file = MappedFile::open(source_options.path);
+  if (file) options.source_bytes = file->bytes();
+  if (options.is_quick) {  // as it is reported
+    options.uniform_cuts = options.cameras = 0;
+    options.deviation_budget = std::min(options.deviation_budget, judge::kQuickDeviationBudget);
+  }
+  const std::optional<std::string> other = describe_other_source(*asset, *source, source_options);
+  judge::VerifyReport report = other ? report_other_source(*other) : judge::verify_asset(*asset, *source, options);
+  if (gpu_options.is_on && !other) {
+    const Status judged = verify_with_gpu(*asset, *source, gpu_options, report);
+    if (!judged) return fail(judged.error());
+  }
+  const OutputOptions& output = command.output;
+  out.text = output.json() ? to_json(path, source_options.path, options, report)
+                           : with_colored_words(describe(report, output.quiet), kStatusWords);
+  describe_row(report, out);
+  out.exit_code = report.finding_count == 0 ? 0 : static_cast<int>(ErrorCode::kCheckFailed);
+  return out;
+}
+
 int run_verify(const Verb& verb, std::span<char* const> args) {
-  std::string path;
-  SourceOptions source_options;
-  GpuOptions gpu_options;
-  std::uint32_t jobs = 0;
+  VerifyCommand command;
+  BulkWords bulk;
   std::string deviation_cuts = "12";
   std::string max_decoded_text = kDefaultMaxDecodedText;
-  judge::VerifyOptions options;
-  OutputOptions output;
+  SourceOptions& source_options = command.source;
+  GpuOptions& gpu_options = command.gpu;
+  judge::VerifyOptions& options = command.checks;
+  OutputOptions& output = command.output;
   OptionParser parser(verb);
-  parser.add_positional("FILE", path, "a .lode asset");
+  add_bulk_inputs(parser, bulk, "FILE", ".lode assets, folders of them, or patterns such as 'out/**/*.lode'",
+                  "verify the assets of this manifest of a build, each with its scene (default: none)");
   parser.group("Source");
   add_source_options(parser, source_options);
   parser.group("Checks");
@@ -206,6 +293,7 @@ int run_verify(const Verb& verb, std::span<char* const> args) {
   add_output_options(parser, output);
   parser.add_flag("-v,--explain", gpu_options.is_explained,
                   "print what the asset keeps and why; with --gpu also which passes the device runs");
+  add_bulk_outputs(parser, bulk);
   parser.group("GPU");
   parser.add_flag("--gpu", gpu_options.is_on, "also decode, select and draw on a Vulkan device, and compare");
   add_device_option(parser, gpu_options.device);
@@ -217,7 +305,7 @@ int run_verify(const Verb& verb, std::span<char* const> args) {
   add_pixel_error_option(parser, gpu_options.pixel_error);
   add_promise_option(parser, gpu_options.promise);
   parser.group("Resources");
-  add_jobs_option(parser, jobs);
+  add_bulk_resources(parser, bulk);
   add_max_decoded_option(parser, max_decoded_text);
   if (const auto exit_code = parser.parse(args)) return *exit_code;
   if (gpu_options.promise != "position" && !gpu_options.is_on) {
@@ -235,42 +323,28 @@ int run_verify(const Verb& verb, std::span<char* const> args) {
 
   const Result<std::uint64_t> max_decoded = parse_max_decoded(max_decoded_text);
   if (!max_decoded) return print_error(max_decoded.error());
-  if (const Status given = check_source_options("verify", path, source_options); !given)
-    return print_error(given.error());
-  gpu_options.max_decoded = *max_decoded;
-
-  const JobLimit limit(jobs);
-  Result<run::Asset> asset = open_asset(path, *max_decoded);
-  if (!asset) return print_error(asset.error());
-  if (const auto id = asset->file_id()) output_files().keep(*id);
-  if (gpu_options.is_on) {  // asked before anything is measured, and chosen by verify_with_gpu() alone
-    if (const Status chosen = choose_promise(gpu_options.promise, *asset); !chosen) return print_error(chosen.error());
-    if (const Status back = asset->choose(format::Promise::kPosition); !back) return print_error(back.error());
+  command.max_decoded = gpu_options.max_decoded = *max_decoded;
+  const auto inputs = find_bulk_inputs(verb, bulk, app::InputKind::kAssets, ManifestSide::kAssets);
+  if (!inputs) return print_error(inputs.error());
+  if (inputs->is_single) {
+    const JobLimit limit(bulk.jobs);
+    return verify_file(inputs->files.front(), command).print();
   }
-  if (const Status size = check_size(*asset); !size) {
-    return print_error({size.error().code, path + ": " + size.error().where, size.error().detail});
+  if (gpu_options.is_on) return print_error({ErrorCode::kUsage, "--gpu", "give one asset: it has the device alone"});
+  std::error_code error;
+  command.is_source_folder = std::filesystem::is_directory(source_options.path, error);
+  const bool has_all_sources = std::all_of(inputs->files.begin(), inputs->files.end(), [](const BulkInput& input) {
+    return !input.source.empty() || !input.error.empty();
+  });
+  if (!has_all_sources && !command.is_source_folder && (source_options.path.empty() || inputs->files.size() > 1)) {
+    return print_error({ErrorCode::kUsage, "--source",
+                        "of several assets name the folder of their scenes, or give "
+                        "--manifest"});
   }
-  if (gpu_options.is_explained) std::fprintf(stderr, "%s", describe_recorded_plan(*asset).c_str());
-  const Result<scene::Scene> source = import_source(*asset, source_options, *max_decoded);
-  if (!source) return print_error(source.error());
-  const Result<MappedFile> file = MappedFile::open(source_options.path);
-  if (file) options.source_bytes = file->bytes();
-  if (options.is_quick) {  // as it is reported
-    options.uniform_cuts = options.cameras = 0;
-    options.deviation_budget = std::min(options.deviation_budget, judge::kQuickDeviationBudget);
-  }
-  const std::optional<std::string> other = describe_other_source(*asset, *source, source_options);
-  judge::VerifyReport report = other ? report_other_source(*other) : judge::verify_asset(*asset, *source, options);
-  if (gpu_options.is_on && !other) {
-    if (const Status judged = verify_with_gpu(*asset, *source, gpu_options, report); !judged) {
-      return print_error(judged.error());
-    }
-  }
-  if (!print_out(output.json() ? to_json(path, source_options.path, options, report)
-                               : with_colored_words(describe(report, output.quiet), kStatusWords))) {
-    return static_cast<int>(ErrorCode::kIo);
-  }
-  return report.finding_count == 0 ? 0 : static_cast<int>(ErrorCode::kCheckFailed);
+  return run_bulk({"verify",
+                   {{"checks", 6}, {"failed", 6}, {"findings", 8}},
+                   [&](const BulkInput& input) { return verify_file(input, command); }},
+                  inputs->files, bulk, output);
 }
 
 }  // namespace
@@ -279,11 +353,14 @@ const Verb kVerifyVerb{"verify", "compare an asset with the scene it was built f
                        "Checks that every source triangle is there, that no cut has a crack, that selection by "
                        "hierarchy and by the flat rule agree, and that cuts deviate from the source by no more than "
                        "the asset states. It shares no code with the builder.\n\n"
-                       "With --gpu a Vulkan device decodes, selects and draws the same, and must agree bit for bit.",
+                       "With --gpu a Vulkan device decodes, selects and draws the same, and must agree bit for bit.\n\n"
+                       "Of several assets each has a row; their scenes come from the manifest of their build, or lie "
+                       "below the folder --source as the assets lie below theirs.",
                        "meshlode verify scene.lode --source scene.glb\n"
                        "  meshlode verify scene.lode --source scene.glb --quick\n"
                        "  meshlode verify scene.lode --source scene.glb --cuts 1000 --cameras 500 --seed 7\n"
-                       "  meshlode verify scene.lode --source scene.glb --gpu --orbits 50",
+                       "  meshlode verify scene.lode --source scene.glb --gpu --orbits 50\n"
+                       "  meshlode verify --manifest out/manifest.json --quick --junit verify.xml",
                        run_verify};
 
 }  // namespace meshlode::cli

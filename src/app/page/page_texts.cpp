@@ -37,6 +37,16 @@ constexpr unsigned char kViewer[] = {
 #include "viewer.js.inc"
 };
 
+constexpr unsigned char kOverviewFrame[] = {
+#include "overview.html.inc"
+};
+constexpr unsigned char kOverviewStyle[] = {
+#include "overview.css.inc"
+};
+constexpr unsigned char kOverviewScript[] = {
+#include "overview.js.inc"
+};
+
 template <std::size_t N>
 std::string_view text_of(const unsigned char (&bytes)[N]) {
   return {reinterpret_cast<const char*>(bytes), N};
@@ -61,6 +71,18 @@ std::span<const std::string_view> page_scripts() {
   static const std::array texts{text_of(kRuntime), text_of(kDag), text_of(kGraph), text_of(kMeshView),
                                 text_of(kViewer)};
   return texts;
+}
+
+std::string_view overview_frame() {
+  return text_of(kOverviewFrame);
+}
+
+std::string_view overview_style() {
+  return text_of(kOverviewStyle);
+}
+
+std::string_view overview_script() {
+  return text_of(kOverviewScript);
 }
 
 }  // namespace meshlode::app

@@ -16,4 +16,9 @@ namespace meshlode::app {
 /// In the order in which they become one script.
 [[nodiscard]] std::span<const std::string_view> page_scripts();
 
+/// The page of a batch (app/overview/), which has neither runtime nor asset.
+[[nodiscard]] std::string_view overview_frame();
+[[nodiscard]] std::string_view overview_style();
+[[nodiscard]] std::string_view overview_script();
+
 }  // namespace meshlode::app

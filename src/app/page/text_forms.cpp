@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/page/text_forms.h"
 
+#include <algorithm>
 #include <cstddef>
 
 #include "base/utf8.h"
@@ -49,6 +50,27 @@ std::string escape_html(std::string_view text) {
     } else {
       out += character;
     }
+  }
+  return out;
+}
+
+std::string script_json(std::string_view json) {
+  std::string out;
+  for (const char c : json) out += c == '<' ? std::string("\\u003c") : std::string(1, c);
+  return out;
+}
+
+std::string fill_holes(std::string_view frame, std::span<const PageHole> holes) {
+  std::string out;
+  for (std::string_view rest = frame; !rest.empty();) {
+    const std::size_t mark = rest.find('@');
+    out += rest.substr(0, mark);
+    if (mark == std::string_view::npos) break;
+    rest.remove_prefix(mark);
+    const auto hole =
+        std::find_if(holes.begin(), holes.end(), [&](const PageHole& h) { return rest.starts_with(h.first); });
+    out += hole != holes.end() ? hole->second : "@";
+    rest.remove_prefix(hole != holes.end() ? hole->first.size() : 1);
   }
   return out;
 }

@@ -119,9 +119,7 @@ std::string facts_json(const run::Asset& asset, const ViewerInput& input, const 
     w.end_array();
   }
   w.end_object();
-  std::string out;
-  for (const char c : w.text()) out += c == '<' ? std::string("\\u003c") : std::string(1, c);
-  return out;
+  return script_json(w.text());
 }
 
 std::string pieces_html(const run::Asset& asset, const std::vector<bool>& chosen) {
@@ -206,7 +204,7 @@ Result<std::string> viewer_page(const run::Asset& asset, const ViewerInput& inpu
     }
   }
   TRY_LET(chosen, choose_pages(asset, input.max_page_bytes));
-  const std::array<std::pair<std::string_view, std::string>, 7> holes{{
+  const std::array<PageHole, 7> holes{{
       {"@TITLE@", escape_html(input.title)},
       {"@LICENCES@", std::string(page_licences())},
       {"@STYLE@", std::string(page_style())},
@@ -215,19 +213,7 @@ Result<std::string> viewer_page(const run::Asset& asset, const ViewerInput& inpu
       {"@RUNTIME@", encode_base64(input.runtime)},
       {"@SCRIPT@", script_text()},
   }};
-  // From left to right, each hole once: what is filled in is not looked at again.
-  std::string out;
-  for (std::string_view rest = page_frame(); !rest.empty();) {
-    const std::size_t mark = rest.find('@');
-    out += rest.substr(0, mark);
-    if (mark == std::string_view::npos) break;
-    rest.remove_prefix(mark);
-    const auto hole =
-        std::find_if(holes.begin(), holes.end(), [&](const auto& h) { return rest.starts_with(h.first); });
-    out += hole != holes.end() ? hole->second : "@";
-    rest.remove_prefix(hole != holes.end() ? hole->first.size() : 1);
-  }
-  return out;
+  return fill_holes(page_frame(), holes);
 }
 
 }  // namespace meshlode::app

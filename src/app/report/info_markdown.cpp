@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "app/report/info.h"
+#include "app/report/markdown.h"
 #include "app/report/rows.h"
 #include "base/append_format.h"
 #include "base/printable.h"
@@ -15,56 +16,27 @@ namespace meshlode::app {
 
 namespace {
 
-/// Text that no reader of Markdown takes for markup, HTML or the end of a table's cell.
-std::string plain(std::string_view text) {
-  constexpr std::string_view kMarkup = "\\`*_[]<>|&~#$!@";
-  std::string out;
-  for (const char c : text) {
-    if (kMarkup.find(c) != std::string_view::npos) out += '\\';
-    out += c;
-  }
-  return out;
-}
-
 std::string number(double value) {
   std::string text;
   append_format(text, "%.4g", value);
   return text;
 }
 
-/// One table, cell by cell. Cells are Markdown already.
-class Table {
- public:
-  /// Columns before `first_number` are aligned to the left, the others to the right.
-  Table(std::string& out, const std::vector<std::string>& head, std::size_t first_number) : out_(out) {
-    row(head);
-    for (std::size_t i = 0; i < head.size(); ++i) out_ += i < first_number ? "| --- " : "| ---: ";
-    out_ += "|\n";
-  }
-  void row(const std::vector<std::string>& cells) {
-    for (const std::string& cell : cells) out_ += "| " + cell + (cell.empty() ? "" : " ");
-    out_ += "|\n";
-  }
-
- private:
-  std::string& out_;
-};
-
 void add_more(std::string& out, std::size_t total, const char* what) {
-  if (const std::string text = more_text(total, what); !text.empty()) out += "\n" + plain(text) + "\n";
+  if (const std::string text = more_text(total, what); !text.empty()) out += "\n" + markdown_text(text) + "\n";
 }
 
 void add_mesh(std::string& out, const run::Asset& asset, std::uint32_t id, const MeshInfo& info) {
   const format::MeshRecord& mesh = asset.meshes()[id];
-  out += "\n## Mesh " + std::to_string(id) + ": " + plain(printable(asset.string(mesh.name))) + "\n\n";
-  for (const std::string& line : mesh_lines(asset, id, info)) out += "- " + plain(line) + "\n";
+  out += "\n## Mesh " + std::to_string(id) + ": " + markdown_text(printable(asset.string(mesh.name))) + "\n\n";
+  for (const std::string& line : mesh_lines(asset, id, info)) out += "- " + markdown_text(line) + "\n";
   out += "\n";
   const DeviationColumns columns = deviation_columns(mesh, info);
   std::vector<std::string> head{"level", "clusters", "triangles",    "vertices",  "full",
                                 "fill",  "groups",   "stuck groups", "error min", "error max"};
   if (columns.normals) head.emplace_back("normals, degrees");
   if (columns.uvs) head.emplace_back("UVs");
-  Table table(out, head, 0);
+  MarkdownTable table(out, head, 0);
   for (const LevelInfo& level : info.levels) {
     std::string fill;
     append_format(fill, "%.3f", level.fill);
@@ -85,10 +57,10 @@ void add_stuck(std::string& out, const AssetInfo& info) {
     out += "none\n";
     return;
   }
-  Table table(out, {"reason", "mesh", "group", "level", "clusters", "triangles"}, 1);
+  MarkdownTable table(out, {"reason", "mesh", "group", "level", "clusters", "triangles"}, 1);
   for (const MeshInfo& mesh : info.meshes) {
     for (const StuckGroupInfo& stuck : mesh.stuck) {
-      table.row({plain(format::name_of(stuck.reason)), std::to_string(stuck.mesh), std::to_string(stuck.group),
+      table.row({markdown_text(format::name_of(stuck.reason)), std::to_string(stuck.mesh), std::to_string(stuck.group),
                  std::to_string(stuck.level), grouped_digits(stuck.clusters), grouped_digits(stuck.triangles)});
     }
   }
@@ -96,12 +68,12 @@ void add_stuck(std::string& out, const AssetInfo& info) {
 
 void add_materials(std::string& out, const run::Asset& asset) {
   out += "\n## Materials\n\n";
-  Table table(out, {"name", "alpha", "sides", "index"}, 3);
+  MarkdownTable table(out, {"name", "alpha", "sides", "index"}, 3);
   for (std::size_t i = 0; i < asset.materials().size() && i < kMaxRows; ++i) {
     const format::MaterialRecord& material = asset.materials()[i];
-    table.row(
-        {plain(printable(asset.string(material.name))) + (material.source_index == format::kNone ? " (default)" : ""),
-         plain(alpha_text(material)), material.double_sided != 0 ? "both" : "front", std::to_string(i)});
+    table.row({markdown_text(printable(asset.string(material.name))) +
+                   (material.source_index == format::kNone ? " (default)" : ""),
+               markdown_text(alpha_text(material)), material.double_sided != 0 ? "both" : "front", std::to_string(i)});
   }
   add_more(out, asset.materials().size(), "materials");
 }
@@ -110,7 +82,7 @@ void add_byte_map(std::string& out, const ByteMap& map) {
   out += "\n## Bytes of decoded pages\n\n";
   std::vector<std::string> head{"level"};
   for (const ByteColumn& column : byte_columns(map.total)) head.emplace_back(column.name);
-  Table table(out, head, 1);
+  MarkdownTable table(out, head, 1);
   const auto row = [&](std::string name, const PageBits& bits, double divisor, int digits) {
     std::vector<std::string> cells{std::move(name)};
     for (const ByteColumn& column : byte_columns(bits)) {
@@ -128,18 +100,18 @@ void add_byte_map(std::string& out, const ByteMap& map) {
 }  // namespace
 
 std::string info_markdown(const run::Asset& asset, const AssetInfo& info, bool list_stuck) {
-  std::string out = "# " + plain(printable(info.meta.source_file)) + "\n\n";
-  Table summary(out, {"", ""}, 2);
-  for (const Row& row : summary_rows(asset, info)) summary.row({row.label, plain(row.value)});
+  std::string out = "# " + markdown_text(printable(info.meta.source_file)) + "\n\n";
+  MarkdownTable summary(out, {"", ""}, 2);
+  for (const Row& row : summary_rows(asset, info)) summary.row({row.label, markdown_text(row.value)});
   for (std::uint32_t m = 0; m < info.meshes.size() && m < kMaxRows; ++m) add_mesh(out, asset, m, info.meshes[m]);
   add_more(out, info.meshes.size(), "meshes");
   if (list_stuck) add_stuck(out, info);
   add_materials(out, asset);
   if (info.byte_map) add_byte_map(out, *info.byte_map);
   out += "\n## Sections\n\n";
-  Table sections(out, {"section", "bytes", "decoded"}, 1);
+  MarkdownTable sections(out, {"section", "bytes", "decoded"}, 1);
   for (const format::SectionEntry& section : asset.sections()) {
-    sections.row({plain(section_name(section.id)), grouped_digits(section.bytes),
+    sections.row({markdown_text(section_name(section.id)), grouped_digits(section.bytes),
                   grouped_digits(section_decoded_bytes(asset, section))});
   }
   return out;

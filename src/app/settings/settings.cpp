@@ -188,7 +188,7 @@ class Settling {
  public:
   /// The defaults, and over them what the last `for` of these layers means.
   explicit Settling(std::span<const SettingLayer> layers = {}) {
-    for (const SettingInfo& info : kSettings) words_[index_of(info.setting)] = {info.usual, "default"};
+    for (const SettingInfo& info : kSettings) words_[index_of(info.setting)] = {info.usual, kDefaultPlace};
     std::string use;
     for (const SettingLayer& layer : layers) use = layer.words[index_of(Setting::kFor)].value_or(use);
     for (const UseWord& word : kUseWords) {
@@ -296,6 +296,21 @@ builder::PipelineOptions options_of(const std::array<SettledWord, kSettingCount>
 
 std::span<const SettingInfo, kSettingCount> all_settings() {
   return kSettings;
+}
+
+std::optional<Setting> setting_of(std::string_view name) {
+  for (const SettingInfo& info : all_settings()) {
+    if (name == info.name) return info.setting;
+  }
+  return std::nullopt;
+}
+
+bool is_list(Setting setting) {
+  return setting == Setting::kKeep || setting == Setting::kDrop;
+}
+
+bool takes_number(Setting setting) {
+  return choices_of(setting).empty() || setting == Setting::kPageSize;
 }
 
 const SettingInfo& info_of(Setting setting) {

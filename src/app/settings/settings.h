@@ -61,6 +61,11 @@ struct SettingInfo {
 [[nodiscard]] const SettingInfo& info_of(Setting setting);
 /// True or false: on the command line its name alone says true.
 [[nodiscard]] bool is_flag(Setting setting);
+/// Names between commas.
+[[nodiscard]] bool is_list(Setting setting);
+/// Of one with choices: where these are numbers.
+[[nodiscard]] bool takes_number(Setting setting);
+[[nodiscard]] std::optional<Setting> setting_of(std::string_view name);
 /// The words that a setting may be; none where it is a number.
 [[nodiscard]] std::vector<std::string> choices_of(Setting setting);
 
@@ -85,10 +90,11 @@ struct SettingLayer {
   }
 };
 
+constexpr const char* kDefaultPlace = "default";
 /// A setting's word, and who said it.
 struct SettledWord {
   std::string word;
-  std::string from;  ///< "default", or a layer's
+  std::string from;  ///< kDefaultPlace, or a layer's
 };
 
 struct Settled {

@@ -34,47 +34,10 @@ bool is_of_the_call(std::string_view key) {
   return std::find(kOptionsOfTheCall.begin(), kOptionsOfTheCall.end(), key) != kOptionsOfTheCall.end();
 }
 
-std::optional<Setting> setting_of(std::string_view name) {
-  for (const SettingInfo& info : all_settings()) {
-    if (name == info.name) return info.setting;
-  }
-  return std::nullopt;
-}
-
 std::string number_text(double number) {
   std::array<char, 32> text{};
   const auto end = std::to_chars(text.data(), text.data() + text.size(), number).ptr;
   return {text.data(), end};
-}
-
-bool is_list(Setting setting) {
-  return setting == Setting::kKeep || setting == Setting::kDrop;
-}
-
-/// Of a setting with choices: where these are numbers.
-bool takes_number(Setting setting) {
-  return choices_of(setting).empty() || setting == Setting::kPageSize;
-}
-
-/// The word that a value stands for; nothing where it is of another kind.
-std::optional<std::string> word_of(Setting setting, const Json& value) {
-  if (is_flag(setting)) {
-    if (!value.is_bool()) return std::nullopt;
-    return std::get<bool>(value.value) ? "true" : "false";
-  }
-  if (value.is_string()) return *value.string();
-  if (is_list(setting)) {
-    if (!value.is_array()) return std::nullopt;
-    std::string words;
-    for (const Json& name : *value.array()) {
-      if (!name.is_string()) return std::nullopt;
-      words += (words.empty() ? "" : ",") + *name.string();
-    }
-    return words;
-  }
-  const auto number = value.number();
-  if (!number || !takes_number(setting)) return std::nullopt;
-  return number_text(*number);
 }
 
 const char* kind_of(Setting setting) {
@@ -138,7 +101,7 @@ class FileReader {
 
   [[nodiscard]] Status read_word(Setting setting, const Json& value, const std::string& path,
                                  SettingWords& words) const {
-    std::optional<std::string> word = word_of(setting, value);
+    std::optional<std::string> word = word_of_value(setting, value);
     if (!word) return wrong(path, kind_of(setting));
     words[static_cast<std::size_t>(setting)] = std::move(*word);
     return Ok{};
@@ -174,6 +137,26 @@ std::vector<fs::path> folders_of(const fs::path& scene, const fs::path& root) {
 }
 
 }  // namespace
+
+std::optional<std::string> word_of_value(Setting setting, const Json& value) {
+  if (is_flag(setting)) {
+    if (!value.is_bool()) return std::nullopt;
+    return std::get<bool>(value.value) ? "true" : "false";
+  }
+  if (value.is_string()) return *value.string();
+  if (is_list(setting)) {
+    if (!value.is_array()) return std::nullopt;
+    std::string words;
+    for (const Json& name : *value.array()) {
+      if (!name.is_string()) return std::nullopt;
+      words += (words.empty() ? "" : ",") + *name.string();
+    }
+    return words;
+  }
+  const auto number = value.number();
+  if (!number || !takes_number(setting)) return std::nullopt;
+  return number_text(*number);
+}
 
 Result<SettingLayer> parse_settings(std::string_view text, const std::string& from) {
   return FileReader(from).read(text);

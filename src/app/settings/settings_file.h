@@ -4,6 +4,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,10 +13,14 @@
 
 #include "app/settings/settings.h"
 #include "base/file.h"
+#include "scene/import/json.h"
 
 namespace meshlode::app {
 
 inline constexpr const char* kSettingsFileName = "meshlode.json";
+
+/// The word that a value stands for; nothing where it is of another type.
+[[nodiscard]] std::optional<std::string> word_of_value(Setting setting, const scene::Json& value);
 
 /// An object: settings under the names of build's long options, and "meshes", an object of globs with what these have
 /// for themselves. `from` names the file. Errors: kInvalid with the path inside the document, for a key with the

@@ -7,8 +7,8 @@ namespace meshlode::builder {
 
 namespace {
 
-/// A triangle is looked at closely where one of four points of it is so far, as a share of what is known. Looking at all
-/// of them costs the dragon 2.7 times the time.
+/// A triangle is looked at closely where one of four points of it is so far, as a share of what is known. Looking at
+/// all of them costs the dragon 2.7 times the time.
 constexpr double kPromise = 0.6;
 /// The same where the source near to these points is not parallel to it, within the cosine below: between two sheets or
 /// two loose pieces a peak is far from all four. Without, 640 sheets above one another have a cut at 1.077 of its error

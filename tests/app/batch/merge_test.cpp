@@ -12,7 +12,9 @@
 #include "app/batch/shard/partition.h"
 #include "app/batch/shard/read_manifest.h"
 #include "app/batch/tell/tell.h"
+#include "app/settings/effective.h"
 #include "batch_folder.h"
+#include "scene/import/json.h"
 
 namespace meshlode::app {
 namespace {
@@ -27,12 +29,33 @@ Hash128 hash_of(std::uint8_t number) {
   return hash;
 }
 
+/// Of every type, from every place.
+EffectiveSettings settings_of(std::uint8_t i) {
+  SettingLayer file{"in/meshlode.json", ErrorCode::kInvalid, {}, {}},
+      line{"the command line", ErrorCode::kUsage, {}, {}};
+  file[Setting::kKeep] = "NORMAL,COLOR_0";
+  file[Setting::kUvError] = "0.25px";
+  file.mesh_rules.push_back({"rock*", {}});
+  file.mesh_rules.back().words[static_cast<std::size_t>(Setting::kPositionError)] = "1e-05";
+  line[Setting::kClusterTriangles] = std::to_string(64 + i);
+  line[Setting::kRepair] = "true";
+  line[Setting::kPreset] = "fast";
+  const std::vector<SettingLayer> layers{file, line};
+  return effective_settings(*settle(layers), layers);
+}
+
 /// File `i` of the batch, each of another kind.
 JobResult result_of(std::uint8_t i) {
   const std::string name(1, static_cast<char>('a' + i));
   JobResult r;
   r.job = {"in/" + name + " \"x\"\\.gltf", "out/" + name + ".lode"};
   r.seconds = 0.25 * i;
+  r.processor_seconds = 0.5 * i;
+  r.peak_memory = i == 4 ? 0 : 1000U * i;
+  r.cache = i == 1 ? CacheUse::kHit : i == 2 ? CacheUse::kNone : CacheUse::kMiss;
+  if (r.cache == CacheUse::kMiss) r.reason = "image \"x\" changed";
+  r.meshes_from_cache = i;
+  if (i != 5) r.settings = settings_of(i);
   if (i == 3) {
     r.status = JobStatus::kFailed;
     r.exit_code = 3;
@@ -107,6 +130,45 @@ TEST_F(MergeTest, AManifestReadAgainIsTheOneThatWasWritten) {
   ASSERT_TRUE(part && part->shard);
   EXPECT_EQ(part->shard->shard.index, 2U);
   EXPECT_EQ(manifest_json(part->results, part->program, part->settings, part->exit_code, &*part->shard), shard(2));
+}
+
+TEST_F(MergeTest, AnAssetTellsItsSettingsTypedAndWhoSaidThem) {
+  const auto root = scene::parse_json(whole());
+  ASSERT_TRUE(root) << root.error().message();
+  EXPECT_EQ(root->find("version")->index(), 2U);
+  const scene::Json& asset = root->items("assets")[0];
+  const scene::Json& values = *asset.find("settings")->find("values");
+  EXPECT_EQ(values.object()->size(), kSettingCount);
+  EXPECT_EQ(values.find("cluster-triangles")->index(), 64U);
+  EXPECT_EQ(std::get<bool>(values.find("repair")->value), true);
+  EXPECT_EQ(values.find("keep")->array()->size(), 2U);
+  EXPECT_EQ(*values.find("uv-error")->string(), "0.25px");
+  EXPECT_EQ(*values.find("error-tier")->string(), "qem") << "what the preset makes of auto";
+  const scene::Json& from = *asset.find("settings")->find("from");
+  EXPECT_EQ(*from.find("keep")->string(), "in/meshlode.json");
+  EXPECT_EQ(*from.find("error-tier")->string(), "the command line");
+  EXPECT_EQ(from.find("codec"), nullptr);
+  EXPECT_EQ(asset.find("settings")->items("mesh_rules")[0].find("values")->find("position-error")->number(), 1e-5);
+}
+
+TEST_F(MergeTest, VersionOneIsReadAndALaterOneIsNot) {
+  const std::string hash = "\"0123456789abcdef0123456789abcdef\"";
+  const std::string asset = R"({"input": "a.glb", "output": "a.lode", "status": "built", "exit_code": 0, "error": null,
+    "hash": )" + hash + R"(, "bytes": 7, "seconds": 1.5, "warnings": [], "files": []})";
+  const std::string head = R"({"generator": "meshlode 0.1.0", "program": )" + hash;
+  const std::string tail = R"(, "settings": {"codec": "strips"}, "exit_code": 0, "complete": true, "assets": [)";
+  const auto read = parse_manifest(head + tail + asset + "]}");
+  ASSERT_TRUE(read) << read.error().message();
+  EXPECT_EQ(read->version, 1U);
+  ASSERT_EQ(read->results.size(), 1U);
+  EXPECT_FALSE(read->results[0].settings);
+  EXPECT_EQ(read->results[0].cache, CacheUse::kNone);
+  EXPECT_EQ(read->results[0].seconds, 1.5);
+  const std::string two = head + R"(, "version": 2, "versions": {})" + tail + asset + "]}";
+  EXPECT_EQ(parse_manifest(two).error().where, "/assets/0/settings");
+  std::string later = whole();
+  later.replace(later.find("\"version\": 2"), 12, "\"version\": 3");
+  EXPECT_EQ(parse_manifest(later).error().code, ErrorCode::kUnsupported);
 }
 
 TEST_F(MergeTest, WhatIsMissingIsNamed) {

@@ -14,7 +14,7 @@ scene() {
 timeless() {
   sed -E -e 's/, [0-9,]+ bytes, [0-9]+\.[0-9]+ s$/, B bytes, S/' \
     -e 's/^([a-z]* +[0-9]*) +[0-9,]* +[0-9]+\.[0-9]{2}  /\1 B S  /' -e 's/time="[0-9.]+"/time="S"/' \
-    -e 's/"seconds": [0-9.e-]+/"seconds": 0/' -e 's/"program": "[0-9a-f]{32}"/"program": "P"/' \
+    -e 's/"((processor_)?seconds)": [0-9.e-]+/"\1": 0/' -e 's/"peak_memory_bytes": [0-9]+/"peak_memory_bytes": M/' -e 's/"program": "[0-9a-f]{32}"/"program": "P"/' \
     -e 's/^      "hash": "[0-9a-f]{32}"/      "hash": "H"/' -e 's/^      "bytes": [1-9][0-9]*/      "bytes": B/'
 }
 mkdir -p in/deep

@@ -43,3 +43,35 @@ rm -r cache/record && printf 'in the way' >cache/record
 rm cache/record
 statuses --cache-limit 2KiB
 echo "within the limit: $(find cache/*/ -type f -printf '%s\n' | awk '{ sum += $1 } END { print (sum <= 2048) }')"
+echo "what the manifest says of the cache"
+mkdir told; cp "$DATA/crystal.glb" told/a.glb
+for preset in fast fast default; do
+  "$MESHLODE" build -q told/a.glb -O told/out --preset $preset --cache told/cache --manifest told/m.json; echo "exit $?"
+  grep -A 3 '"cache": ' told/m.json
+done
+"$MESHLODE" build -q told/a.glb -O told/out --manifest told/m.json; grep -A 3 '"cache": ' told/m.json
+# Linux tells how much memory a job took; what it does not tell is null.
+grep -cE '"peak_memory_bytes": ([1-9][0-9]{6,}|null),$' told/m.json
+"$JSON_CHECK" "$SCHEMAS/manifest.schema.json" <told/m.json
+echo "the cache by itself"
+# What entries weigh is not asked here, but that they do.
+weightless() { sed -E 's/ [1-9][0-9,]*$/ B/'; }
+"$MESHLODE" build -q told/a.glb -O told/out --preset fast --cache own --quiet
+run cache own | weightless
+json cache cache own --stats --format json
+run cache own --verify | weightless
+for entry in own/asset/*/* own/mesh/*/*; do printf '\001' | dd of="$entry" bs=1 seek=1000 conv=notrunc status=none; done
+run cache own --verify | weightless
+run cache own --verify --quiet
+"$MESHLODE" build -q told/a.glb -O told/out --preset fast --cache own; echo "exit $?"
+MESHLODE_CACHE=own json cache cache --trim 100KiB --format json
+run cache own --clear | weightless
+ls -A own; "$MESHLODE" build -q told/a.glb -O told/out --preset fast --cache own; echo "exit $?"
+# Nothing else is taken for a cache, or made one.
+mkdir other; touch other/file
+run cache other --clear
+run cache none --clear
+mkdir nothing; run cache nothing --stats --quiet; ls -A other nothing
+run cache own --clear --verify
+run cache own --trim much
+run cache

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # kill -9 at random moments, of two batches at once that share a cache: nothing broken is ever there, neither an asset nor an
-# entry of the cache, the next run completes, and its bytes are those of a clean run. KILLS: how many batches are killed before
+# entry of the cache, the manifest can be read and lists no asset that is not there, the next run completes, and its bytes are
+# those of a clean run. KILLS: how many batches are killed before
 # they are done, at least (10; the slow test takes 50).
 RANDOM=${SEED:-20}
 mkdir in
@@ -34,12 +35,12 @@ check() {
 killed=0 first_killed=0 leftovers=0 rounds=0
 while [ $((killed + first_killed)) -lt "${KILLS:-10}" ] && [ $rounds -lt $((20 * ${KILLS:-10})) ]; do
   rounds=$((rounds + 1))
-  rm -rf one/*.lode
+  rm -rf one/*.lode one.json
   case $((RANDOM % 3)) in
     0) rm -rf cache ;;
     1) rm -rf cache/asset cache/record ;;  # meshes are left to be found
   esac
-  "$MESHLODE" build --quiet in -O one --preset fast --cache cache 2>>../stderr &
+  "$MESHLODE" build --quiet in -O one --preset fast --cache cache --manifest one.json 2>>../stderr &
   first=$!
   "$MESHLODE" build --quiet in -O two --preset fast --cache cache --cache-limit 200KiB 2>>../stderr &
   second=$!
@@ -54,6 +55,8 @@ while [ $((killed + first_killed)) -lt "${KILLS:-10}" ] && [ $rounds -lt $((20 *
   # On a busy machine both may be gone before there is a cache.
   leftovers=$((leftovers + $(find cache one two -name '.meshlode-*' 2>/dev/null | wc -l)))
   check
+  [ ! -e one.json ] || "$MESHLODE" report one.json --format annotations >told || echo "a manifest that cannot be read"
+  [ ! -e told ] || grep 'unreadable-asset' told
 done
 killed=$((killed + first_killed))
 echo "killed in the middle: $killed batches, $first_killed of them the first of two, in $rounds rounds; they left $leftovers temporary files" >&3

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Shards and their merge: the manifest and the assets of one batch, to the byte but for the seconds; what is missing, twice,
+# Shards and their merge: the manifest and the assets of one batch, to the byte but for what is measured; what is missing, twice,
 # stale or changed is refused, and a shard that was killed leaves no manifest.
 mkdir -p in/deep
 # terrain SIDE SEED: an OBJ of 2 SIDE^2 triangles
@@ -19,7 +19,7 @@ printf '{"codec": "none"}' >in/deep/meshlode.json
 printf 'broken' >in/deep/broken.glb
 printf 'mtllib 5.mtl\n' >>in/5.obj
 printf 'newmtl a\n' >in/5.mtl
-timeless() { sed -E 's/^(      "seconds": ).*/\1S,/'; }
+timeless() { sed -E 's/^(      "(seconds|processor_seconds|peak_memory_bytes)": ).*/\1M,/'; }
 # shard I/N OPTION…
 shard() { "$MESHLODE" build --quiet in -O out --shard "$1" --manifest "parts/shard-${1%/*}.json" "${@:2}" 2>/dev/null; echo "shard $*: exit $?"; }
 
@@ -76,7 +76,8 @@ grep -c '"output":' report.json; grep -c '^out/' depfile
 shard 2/3 --fail-if 'totals.source_triangles>1000'
 shard 3/3 "${words[@]}"
 code merge --quiet parts/*.json -o m.json
-built() { timeless <"$1" | sed -E 's/"(unchanged|cached)"/"built"/'; }
+# With a cache and without.
+built() { timeless <"$1" | sed -E -e 's/"(unchanged|cached)"/"built"/' -e 's/^(        "(use|reason|meshes)": ).*/\1C/'; }
 [ -s m.json ] && cmp <(built local-2.json) <(built m.json) && echo "the manifest of one batch"
 run build in -O out --shard 2/3 --cache cache --dry-run
 rm -rf cache junit.xml report.json depfile local-2.json m.json

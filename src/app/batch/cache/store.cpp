@@ -7,6 +7,8 @@
 #include <unistd.h>
 #include <algorithm>
 #include <array>
+#include <cerrno>
+#include <charconv>
 #include <cstring>
 #include <mutex>
 #include <string>
@@ -40,6 +42,31 @@ struct Trailer {
   friend bool operator==(const Trailer&, const Trailer&) = default;
 };
 static_assert(sizeof(Trailer) == 64);
+
+/// Whether a file of this kind and key is what was kept; then `bytes` are those without the trailer.
+bool is_sound(EntryKind kind, const Hash128& key, std::span<const std::uint8_t>& bytes) {
+  if (kind == EntryKind::kAsset) return hash128(bytes) == key;
+  if (bytes.size() < sizeof(Trailer)) return false;
+  Trailer trailer;
+  std::memcpy(&trailer, bytes.data() + bytes.size() - sizeof(Trailer), sizeof(Trailer));
+  bytes = bytes.first(bytes.size() - sizeof(Trailer));
+  Trailer expected;
+  expected.kind = static_cast<std::uint32_t>(kind);
+  expected.bytes = bytes.size();
+  expected.key = key;
+  expected.hash = trailer.hash;
+  return trailer == expected && hash128(bytes) == trailer.hash;
+}
+
+/// Of an entry's path. \pre list_entries() found it
+Hash128 key_of(const fs::path& path) {
+  const std::string digits = path.parent_path().filename().string() + path.filename().string();
+  Hash128 key{};
+  for (std::size_t i = 0; i < key.size(); ++i) {
+    std::from_chars(digits.data() + 2 * i, digits.data() + 2 * i + 2, key[i], 16);
+  }
+  return key;
+}
 
 bool is_hex(std::string_view name, std::size_t digits) {
   return name.size() == digits && name.find_first_not_of("0123456789abcdef") == std::string_view::npos;
@@ -126,22 +153,9 @@ std::optional<Store::Entry> Store::find(EntryKind kind, const Hash128& key) cons
   auto file = MappedFile::open(path);
   if (!file) return std::nullopt;
   auto bytes = file->bytes();
-  bool is_sound = false;
-  if (kind == EntryKind::kAsset) {
-    is_sound = hash128(bytes) == key;
-  } else if (bytes.size() >= sizeof(Trailer)) {
-    Trailer trailer;
-    std::memcpy(&trailer, bytes.data() + bytes.size() - sizeof(Trailer), sizeof(Trailer));
-    bytes = bytes.first(bytes.size() - sizeof(Trailer));
-    Trailer expected;
-    expected.kind = static_cast<std::uint32_t>(kind);
-    expected.bytes = bytes.size();
-    expected.key = key;
-    expected.hash = trailer.hash;
-    is_sound = trailer == expected && hash128(bytes) == trailer.hash;
-  }
-  if (options_.is_read_only) return is_sound ? std::optional(Entry{std::move(*file), bytes}) : std::nullopt;
-  if (!is_sound) {
+  const bool sound = is_sound(kind, key, bytes);
+  if (options_.is_read_only) return sound ? std::optional(Entry{std::move(*file), bytes}) : std::nullopt;
+  if (!sound) {
     ::unlink(path.c_str());
     return std::nullopt;
   }
@@ -184,25 +198,71 @@ void Store::keep_asset(const Hash128& hash, std::span<const std::uint8_t> asset)
 }
 
 void Store::trim() const {
-  if (options_.is_read_only || options_.limit == 0) return;
-  const int lock = ::open((folder_ / "trim.lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-  if (lock < 0) return;
-  if (::flock(lock, LOCK_EX | LOCK_NB) == 0) {
-    std::vector<StoredFile> files;
-    // Beside the tag nobody writes again who would remove what a killed writer left there.
-    static_cast<void>(OutputFiles().claim(folder_ / kTagName));
-    for (const char* folder : kFolders) list_entries(folder_ / folder, files);
-    std::sort(files.begin(), files.end(),
-              [](const StoredFile& a, const StoredFile& b) { return a.was_used_before(b); });
-    std::uint64_t total = 0;
-    for (const StoredFile& file : files) total += file.bytes;
-    for (const StoredFile& file : files) {
-      if (total <= options_.limit) break;
-      // A reader that has it open keeps it; one that comes now builds again.
-      if (::unlink(file.path.c_str()) == 0) total -= file.bytes;
-    }
+  if (!options_.is_read_only && options_.limit != 0) static_cast<void>(trim_to(options_.limit));
+}
+
+Result<EntryCount> Store::trim_to(std::uint64_t limit) const {
+  const fs::path lock_path = folder_ / "trim.lock";
+  const int lock = ::open(lock_path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+  if (lock < 0) return Error{ErrorCode::kIo, lock_path.string(), std::strerror(errno)};
+  if (::flock(lock, LOCK_EX | LOCK_NB) != 0) {
+    ::close(lock);
+    return Error{ErrorCode::kIo, folder_.string(), "another process is trimming this cache"};
+  }
+  std::vector<StoredFile> files;
+  // Beside the tag nobody writes again who would remove what a killed writer left there.
+  static_cast<void>(OutputFiles().claim(folder_ / kTagName));
+  for (const char* folder : kFolders) list_entries(folder_ / folder, files);
+  std::sort(files.begin(), files.end(), [](const StoredFile& a, const StoredFile& b) { return a.was_used_before(b); });
+  std::uint64_t total = 0;
+  for (const StoredFile& file : files) total += file.bytes;
+  EntryCount removed;
+  for (const StoredFile& file : files) {
+    if (total <= limit) break;
+    // A reader that has it open keeps it; one that comes now builds again.
+    if (::unlink(file.path.c_str()) != 0) continue;
+    total -= file.bytes;
+    ++removed.entries;
+    removed.bytes += file.bytes;
   }
   ::close(lock);
+  return removed;
+}
+
+std::array<EntryCount, kEntryKindCount> Store::count() const {
+  std::array<EntryCount, kEntryKindCount> counts;
+  for (std::size_t kind = 0; kind < kEntryKindCount; ++kind) {
+    std::vector<StoredFile> files;
+    list_entries(folder_ / kFolders[kind], files);
+    counts[kind].entries = files.size();
+    for (const StoredFile& file : files) counts[kind].bytes += file.bytes;
+  }
+  return counts;
+}
+
+Store::Check Store::check() const {
+  Check check;
+  for (std::size_t kind = 0; kind < kEntryKindCount; ++kind) {
+    std::vector<StoredFile> files;
+    list_entries(folder_ / kFolders[kind], files);
+    for (const StoredFile& stored : files) {
+      const auto file = MappedFile::open(stored.path);
+      std::error_code error;
+      if (!file && !fs::exists(stored.path, error)) continue;  // somebody trimmed it
+      ++check.checked.entries;
+      check.checked.bytes += stored.bytes;
+      std::span<const std::uint8_t> bytes = file ? file->bytes() : std::span<const std::uint8_t>();
+      if (file && is_sound(static_cast<EntryKind>(kind), key_of(stored.path), bytes)) continue;
+      ++check.broken.entries;
+      check.broken.bytes += stored.bytes;
+      if (!options_.is_read_only) ::unlink(stored.path.c_str());
+    }
+  }
+  return check;
+}
+
+const char* name_of(EntryKind kind) {
+  return kFolders[static_cast<std::size_t>(kind)];
 }
 
 std::optional<Error> Store::first_error() const {

@@ -9,6 +9,7 @@
 // The hash is XXH3, which nobody is kept from forging: who may write into a cache is trusted by all who take from it.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -30,6 +31,12 @@ enum class EntryKind : std::uint32_t {
   kLast,    ///< the ingredients of what an output held last, to say what changed
 };
 constexpr std::size_t kEntryKindCount = 4;
+
+[[nodiscard]] const char* name_of(EntryKind kind);
+
+struct EntryCount {
+  std::uint64_t entries = 0, bytes = 0;
+};
 
 struct StoreOptions {
   std::uint64_t limit = 0;    ///< bytes of all entries together after trim(); 0: none
@@ -59,6 +66,19 @@ class Store {
   /// Removes the entries that were used longest ago until the rest keeps the limit, and what killed writers left. One
   /// process at a time; others leave it to that one.
   void trim() const;
+
+  /// The same to another limit, of which 0 leaves nothing; what was removed. Errors: kIo, also where another process is
+  /// at it. \pre not read-only
+  [[nodiscard]] Result<EntryCount> trim_to(std::uint64_t limit) const;
+
+  /// What there is, by kind.
+  [[nodiscard]] std::array<EntryCount, kEntryKindCount> count() const;
+
+  struct Check {
+    EntryCount checked, broken;
+  };
+  /// Proves every entry, and removes those that are not what was kept. Does not mark them as used.
+  [[nodiscard]] Check check() const;
 
   /// Why something could not be kept, of the first time.
   [[nodiscard]] std::optional<Error> first_error() const;

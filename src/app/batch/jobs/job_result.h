@@ -4,12 +4,14 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "app/batch/depend/dependencies.h"
 #include "app/batch/jobs/jobs.h"
+#include "app/settings/effective.h"
 #include "base/enum_names.h"
 #include "base/hash.h"
 #include "builder/progress.h"
@@ -59,6 +61,19 @@ struct JobWarning {
   std::string text;  ///< one line
 };
 
+/// Whether a job asked the cache for its asset, and what it got.
+enum class CacheUse : std::uint8_t {
+  kNone,  ///< there is none, or the job did not come to it
+  kHit,
+  kMiss,  ///< the reason is the result's
+};
+constexpr std::size_t kCacheUseCount = 3;
+inline constexpr std::array<EnumName<CacheUse>, kCacheUseCount> kCacheUseNames{
+    {{CacheUse::kNone, "none"}, {CacheUse::kHit, "hit"}, {CacheUse::kMiss, "miss"}}};
+constexpr const char* name_of(CacheUse use) {
+  return name_in(kCacheUseNames, use);
+}
+
 struct JobResult {
   Job job;
   JobStatus status = JobStatus::kSkipped;
@@ -67,9 +82,13 @@ struct JobResult {
   std::string reason;  ///< why it was built, or would be; empty where nobody asked (no cache)
   JobFacts facts;
   std::vector<JobWarning> warnings;
-  Hash128 asset_hash{};               ///< of the asset's bytes; zeros where there is none
-  double seconds = 0.0;               ///< wall time
-  std::uint64_t memory_estimate = 0;  ///< 0: not reached
+  Hash128 asset_hash{};            ///< of the asset's bytes; zeros where there is none
+  double seconds = 0.0;            ///< wall time
+  double processor_seconds = 0.0;  ///< of all threads
+  std::uint64_t peak_memory = 0;   ///< of the process while the job ran; 0: not known
+  CacheUse cache = CacheUse::kNone;
+  std::optional<EffectiveSettings> settings;  ///< nothing: they are not known, or wrong
+  std::uint64_t memory_estimate = 0;          ///< 0: not reached
   std::uint64_t meshes_from_cache = 0;
   std::vector<builder::StageTime> stages;
   std::vector<builder::LevelTime> levels;

@@ -103,7 +103,8 @@ Result<Manifest> merge_shards(std::vector<ShardManifest> shards) {
   std::sort(places.begin(), places.end());
   const Manifest& first = shards.front().manifest;
   const std::uint64_t batch_jobs = first.shard->batch_jobs;
-  Manifest merged{first.generator, first.program, first.settings, 0, true, std::nullopt, {}};
+  Manifest merged{
+      first.generator, kManifestVersion, first.program, first.versions, first.settings, 0, true, std::nullopt, {}};
   constexpr const char* kAgain = "; inputs changed between shards: build all of them again";
   for (const auto& [position, s, i] : places) {
     JobResult& result = shards[s].manifest.results[i];

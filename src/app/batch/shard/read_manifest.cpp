@@ -104,7 +104,35 @@ Dependency read_file(Members& in, const Json& json) {
   return file;
 }
 
-JobResult read_result(Members& in, const Json& json) {
+double read_seconds(Members& in, const Json& json, const char* key) {
+  const Json* seconds = json.find(key);
+  const auto number = seconds != nullptr ? seconds->number() : std::nullopt;
+  if (!number) in.refuse(key, "no number");
+  return number.value_or(0.0);
+}
+
+/// What version 1 has not.
+void read_more(Members& in, const Json& json, JobResult& r) {
+  if (!Members::is_null(json, "settings")) {
+    const Json* settings = json.find("settings");
+    auto effective = settings != nullptr && settings->is_object()
+                         ? read_effective(*settings)
+                         : Result<EffectiveSettings>(Error{ErrorCode::kInvalid, "", "no object"});
+    if (!effective) in.refuse("settings" + effective.error().where, effective.error().detail.c_str());
+    if (effective) r.settings = std::move(*effective);
+  }
+  const Json* cache = json.find("cache");
+  if (cache == nullptr || !cache->is_object()) return in.refuse("cache", "no object");
+  const auto use = value_in(kCacheUseNames, in.text(*cache, "use"));
+  if (!use) in.refuse("cache/use", "no use of a cache");
+  r.cache = use.value_or(CacheUse::kNone);
+  if (!Members::is_null(*cache, "reason")) r.reason = in.text(*cache, "reason");
+  r.meshes_from_cache = in.number(*cache, "meshes", kAnyNumber);
+  r.processor_seconds = read_seconds(in, json, "processor_seconds");
+  if (!Members::is_null(json, "peak_memory_bytes")) r.peak_memory = in.number(json, "peak_memory_bytes", kAnyNumber);
+}
+
+JobResult read_result(Members& in, const Json& json, std::uint64_t version) {
   JobResult r;
   r.job.input = in.text(json, "input");
   r.job.output = in.text(json, "output");
@@ -122,9 +150,8 @@ JobResult read_result(Members& in, const Json& json) {
     in.refuse("hash", "contradicts the status");
   }
   r.facts.bytes = in.number(json, "bytes", r.has_asset() ? kAnyNumber : 0);
-  const Json* seconds = json.find("seconds");
-  if (seconds == nullptr || !seconds->number()) in.refuse("seconds", "no number");
-  r.seconds = seconds != nullptr ? seconds->number().value_or(0.0) : 0.0;
+  r.seconds = read_seconds(in, json, "seconds");
+  if (version > 1) read_more(in, json, r);
   for (const Json& warning : in.objects(json, "warnings")) {
     if (!in.is_sound()) break;
     r.warnings.push_back({in.text(warning, "id"), in.text(warning, "text")});
@@ -156,6 +183,17 @@ std::string read_settings(Members& in, const Json& root) {
   return text;
 }
 
+Versions read_versions(Members& in, const Json& root) {
+  Versions versions;
+  const Json* json = root.find("versions");
+  if (json == nullptr || !json->is_object()) {
+    in.refuse("versions", "no object");
+    return versions;
+  }
+  for (const scene::JsonMember& member : *json->object()) versions.emplace_back(member.key, in.text(*json, member.key));
+  return versions;
+}
+
 ShardPlan read_shard(Members& in, const Json& json) {
   ShardPlan plan;
   in.enter("/shard");
@@ -176,7 +214,14 @@ Result<Manifest> parse_manifest(std::string_view text) {
   Members in;
   Manifest manifest;
   manifest.generator = in.text(*root, "generator");
+  if (root->find("version") != nullptr) manifest.version = in.number(*root, "version", kAnyNumber);
+  if (manifest.version > kManifestVersion) {
+    return Error{ErrorCode::kUnsupported, "",
+                 "a manifest of version " + std::to_string(manifest.version) + "; this program reads versions up to " +
+                     std::to_string(kManifestVersion)};
+  }
   manifest.program = in.hash(*root, "program");
+  if (manifest.version > 1) manifest.versions = read_versions(in, *root);
   manifest.settings = read_settings(in, *root);
   manifest.exit_code = static_cast<int>(in.number(*root, "exit_code", 255));
   if (const Json* complete = root->find("complete")) {
@@ -197,7 +242,7 @@ Result<Manifest> parse_manifest(std::string_view text) {
       }
       positions.push_back(position);
     }
-    manifest.results.push_back(read_result(in, assets[i]));
+    manifest.results.push_back(read_result(in, assets[i], manifest.version));
   }
   in.enter("");
   const int worst = worst_exit_code(manifest.results);

@@ -12,13 +12,16 @@
 
 #include "app/batch/jobs/job_result.h"
 #include "app/batch/shard/partition.h"
+#include "app/batch/tell/tell.h"
 #include "base/hash.h"
 
 namespace meshlode::app {
 
 struct Manifest {
   std::string generator;
+  std::uint64_t version = 1;
   Hash128 program{};
+  Versions versions;
   std::string settings;  ///< as settings_text()
   int exit_code = 0;
   bool is_complete = true;         ///< false: the batch was interrupted, or is still at work
@@ -27,7 +30,7 @@ struct Manifest {
   std::vector<JobResult> results;
 };
 
-/// Errors: kInvalid with the place; `where` has no file's name.
+/// Errors: kUnsupported for a version that is not known; kInvalid with the place; `where` has no file's name.
 [[nodiscard]] Result<Manifest> parse_manifest(std::string_view text);
 
 /// Errors: kIo; as parse_manifest, with the file's name.

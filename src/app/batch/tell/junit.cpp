@@ -61,43 +61,58 @@ const char* kind_of(int exit_code) {
   return "failed";
 }
 
-std::string case_xml(const JobResult& r) {
-  std::string text = "    <testcase classname=\"meshlode.build\" name=\"" + escaped(r.job.input.string()) + "\"";
-  append_format(text, " time=\"%.3f\"", r.seconds);
+/// What a build says of a job, as a test case.
+TestCase case_of(const JobResult& r) {
+  TestCase test{r.job.input.string(), r.seconds, r.exit_code, {}, r.status == JobStatus::kSkipped};
   if (r.status == JobStatus::kFailed) {
-    text += ">\n      <failure type=\"" + std::string(kind_of(r.exit_code)) + "\" message=\"" + escaped(r.error) +
-            "\"/>\n    </testcase>\n";
-  } else if (r.status == JobStatus::kSkipped) {
-    const std::string why = r.error.empty() ? "a file before it failed" : r.error;
-    text += ">\n      <skipped message=\"" + escaped(why) + "\"/>\n    </testcase>\n";
+    test.text = r.error;
+  } else if (test.is_skipped) {
+    test.text = r.error.empty() ? "a file before it failed" : r.error;
   } else {
-    std::string lines;
-    for (const JobWarning& warning : r.warnings) lines += "warning: " + warning.text + "\n";
-    for (const scene::LeftOut& left : r.facts.left_out) lines += "left out: " + left.what + ": " + left.why + "\n";
-    text += ">\n      <system-out>" +
-            escaped(std::string(name_of(r.status)) + ": " + r.job.output.string() + "\n" + lines) +
-            "</system-out>\n    </testcase>\n";
+    test.text = std::string(name_of(r.status)) + ": " + r.job.output.string() + "\n";
+    for (const JobWarning& warning : r.warnings) test.text += "warning: " + warning.text + "\n";
+    for (const scene::LeftOut& left : r.facts.left_out) {
+      test.text += "left out: " + left.what + ": " + left.why + "\n";
+    }
   }
-  return text;
+  return test;
+}
+
+std::string case_xml(const std::string& verb, const TestCase& test) {
+  std::string text = "    <testcase classname=\"meshlode." + verb + "\" name=\"" + escaped(test.name) + "\"";
+  append_format(text, " time=\"%.3f\"", test.seconds);
+  if (test.is_skipped) return text + ">\n      <skipped message=\"" + escaped(test.text) + "\"/>\n    </testcase>\n";
+  if (test.exit_code != 0) {
+    return text + ">\n      <failure type=\"" + kind_of(test.exit_code) + "\" message=\"" + escaped(test.text) +
+           "\"/>\n    </testcase>\n";
+  }
+  return text + ">\n      <system-out>" + escaped(test.text) + "</system-out>\n    </testcase>\n";
 }
 
 }  // namespace
 
 std::string junit_xml(const std::vector<JobResult>& results) {
+  std::vector<TestCase> tests;
+  tests.reserve(results.size());
+  for (const JobResult& r : results) tests.push_back(case_of(r));
+  return junit_xml("build", tests);
+}
+
+std::string junit_xml(const std::string& verb, const std::vector<TestCase>& tests) {
   std::size_t failed = 0, skipped = 0;
   double seconds = 0.0;
   std::string cases;
-  for (const JobResult& r : results) {
-    failed += r.status == JobStatus::kFailed ? 1 : 0;
-    skipped += r.status == JobStatus::kSkipped ? 1 : 0;
-    seconds += r.seconds;
-    cases += case_xml(r);
+  for (const TestCase& test : tests) {
+    skipped += test.is_skipped ? 1 : 0;
+    failed += !test.is_skipped && test.exit_code != 0 ? 1 : 0;
+    seconds += test.seconds;
+    cases += case_xml(verb, test);
   }
   std::string counts;
-  append_format(counts, " tests=\"%zu\" failures=\"%zu\" errors=\"0\" skipped=\"%zu\" time=\"%.3f\"", results.size(),
+  append_format(counts, " tests=\"%zu\" failures=\"%zu\" errors=\"0\" skipped=\"%zu\" time=\"%.3f\"", tests.size(),
                 failed, skipped, seconds);
   return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites name=\"meshlode\"" + counts +
-         ">\n  <testsuite name=\"meshlode build\"" + counts + ">\n" + cases + "  </testsuite>\n</testsuites>\n";
+         ">\n  <testsuite name=\"meshlode " + verb + "\"" + counts + ">\n" + cases + "  </testsuite>\n</testsuites>\n";
 }
 
 }  // namespace meshlode::app

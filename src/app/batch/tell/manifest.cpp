@@ -66,7 +66,26 @@ void write_result(JsonWriter& w, const JobResult& r, const std::uint64_t* positi
     w.null();
   }
   w.field("bytes", r.has_asset() ? r.facts.bytes : 0);
+  w.key("settings");
+  if (r.settings) {
+    write_effective(w, *r.settings);
+  } else {
+    w.null();
+  }
+  w.key("cache");
+  w.begin_object();
+  w.field("use", name_of(r.cache));
+  w.text_or_null_field("reason", r.cache == CacheUse::kMiss ? r.reason : "");
+  w.field("meshes", r.meshes_from_cache);
+  w.end_object();
   w.field("seconds", r.seconds);
+  w.field("processor_seconds", r.processor_seconds);
+  w.key("peak_memory_bytes");
+  if (r.peak_memory > 0) {
+    w.value(r.peak_memory);
+  } else {
+    w.null();
+  }
   write_warnings(w, r.warnings);
   w.key("files");
   w.begin_array();
@@ -88,12 +107,17 @@ void write_shard(JsonWriter& w, const ShardPlan& plan) {
 }  // namespace
 
 std::string manifest_json(const std::vector<JobResult>& results, const Hash128& program, const std::string& settings,
-                          int exit_code, const ShardPlan* shard, bool is_complete) {
+                          int exit_code, const ShardPlan* shard, bool is_complete, const Versions& versions) {
   assert(shard == nullptr || shard->positions.size() == results.size());
   JsonWriter w;
   w.begin_object();
   w.field("generator", program_version());
+  w.field("version", kManifestVersion);
   w.field("program", to_hex(program));
+  w.key("versions");
+  w.begin_object();
+  for (const auto& [name, version] : versions) w.field(name, version);
+  w.end_object();
   write_settings(w, settings);
   w.field("exit_code", exit_code);
   w.field("complete", is_complete);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <ctime>
 #include <optional>
 #include <span>
 #include <system_error>
@@ -14,6 +15,7 @@
 #include "app/batch/work/decided.h"
 #include "app/batch/work/warnings.h"
 #include "base/guarded.h"
+#include "base/memory.h"
 #include "base/try.h"
 #include "builder/builder.h"
 #include "builder/stage_options.h"
@@ -101,9 +103,11 @@ class Run {
     if (options_.is_dry_run) return unreadable ? Status(*unreadable) : plan();
     if (Status ready = make_ready(); !ready) return ready;
     if (!ingredients_.empty() && !lacks_files()) {
+      result_.cache = CacheUse::kHit;
       if (auto record = options_.cache->find_record(ingredients_)) {
         if (auto done = take_from_cache(*record)) return std::move(*done);
       }
+      result_.cache = CacheUse::kMiss;
       result_.reason = options_.cache->explain(result_.job.output, ingredients_);
     }
     // One scene that runs out of memory is one failed job.
@@ -117,6 +121,7 @@ class Run {
     TRY_LET(layers, options_.settings_of(result_.job));
     layers_ = std::move(*layers);
     TRY_LET(settled, app::settle(layers_));
+    result_.settings = effective_settings(*settled, layers_);
     settled->options.max_memory = pipeline_.max_memory;
     settled->options.looks = pipeline_.looks;
     settled->options.hooks = pipeline_.hooks;
@@ -324,12 +329,16 @@ class Run {
 JobResult run_job(const Job& job, const BatchOptions& options, OutputFiles& files, const BatchWatcher& watcher,
                   Error& error) {
   const Timer timer;
+  const std::clock_t processor_start = std::clock();
+  const bool has_peak = options.lists_files && restart_peak_memory();  // of a manifest
   Run run(job, options, files, watcher);
   Status done = run.go();
   JobResult result = run.take();
   result.warnings = list_warnings(result.facts);
   if (done && options.check_asset && !options.is_dry_run) done = options.check_asset(job.output);
   result.seconds = timer.seconds();
+  result.processor_seconds = static_cast<double>(std::clock() - processor_start) / CLOCKS_PER_SEC;
+  result.peak_memory = has_peak ? peak_memory() : 0;
   if (done) return result;
   error = done.error();
   if (error.where.empty()) error.where = job.input.string();

@@ -1,0 +1,338 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "bulk.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <mutex>
+#include <numeric>
+#include <optional>
+#include <system_error>
+#include <utility>
+
+#include "app/batch/jobs/weigh.h"
+#include "app/batch/shard/read_manifest.h"
+#include "app/batch/tell/tell.h"
+#include "base/append_format.h"
+#include "base/file.h"
+#include "base/guarded.h"
+#include "base/json_writer.h"
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "base/try.h"
+#include "file_kind.h"
+#include "output_name.h"
+#include "outputs.h"
+#include "streams.h"
+#include "terminal.h"
+
+namespace meshlode::cli {
+
+namespace {
+
+constexpr int kCheckFailed = static_cast<int>(ErrorCode::kCheckFailed);
+constexpr int kLineWidth = 80;
+constexpr int kResultWidth = 6;  ///< "FAILED"
+constexpr int kLeastName = 12;   ///< of a name this much is always shown
+
+/// What a file takes while it is worked on, for each byte of it and of its scene. Peaks measured (`/usr/bin/time`, less
+/// the process): 26 with validate of bunny.lode and of terrain.lode, 14 of dragon.lode; 10 with doctor of dragon.glb;
+/// 12 with verify of rock.lode and 4 of dragon.lode; info and plan take less.
+constexpr std::uint64_t kMemoryPerByte = 32;
+constexpr std::uint64_t kMemoryOfProcess = std::uint64_t{32} << 20U;  ///< 10 MiB measured, and stacks of threads
+
+std::string shown_name(const BulkInput& input) {
+  return input_name(input.path.empty() ? input.source : input.path);
+}
+
+/// The end of a name that is too long for its column: of paths it is the end that differs.
+std::string shortened(const std::string& name, std::size_t width) {
+  if (name.size() <= width) return name;
+  std::size_t begin = name.size() - (width - 3);
+  while (begin < name.size() && (static_cast<unsigned char>(name[begin]) & 0xC0U) == 0x80U) ++begin;  // UTF-8
+  return "..." + name.substr(begin);
+}
+
+std::string plain_line(std::string text) {
+  for (char& c : text) {
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) c = '?';
+  }
+  return text;
+}
+
+std::string head_row(const BulkVerb& verb) {
+  std::string row = "result";
+  for (const BulkColumn& column : verb.columns) append_format(row, "  %*s", column.width, column.name);
+  return row + "  file\n";
+}
+
+const char* result_word(int exit_code) {
+  return exit_code == 0 ? "ok" : exit_code == kCheckFailed ? "FAILED" : "error";
+}
+
+std::string row_of(const BulkVerb& verb, const BulkInput& input, const FileOutcome& outcome) {
+  const char* const word = result_word(outcome.exit_code);
+  std::string row = colored(Stream::kOut, outcome.exit_code == 0 ? Color::kGreen : Color::kRed, word);
+  row.append(static_cast<std::size_t>(kResultWidth) - std::string_view(word).size(), ' ');
+  int used = kResultWidth;
+  for (std::size_t i = 0; i < verb.columns.size(); ++i) {
+    const char* const cell = i < outcome.cells.size() ? outcome.cells[i].c_str() : "";
+    append_format(row, "  %*s", verb.columns[i].width, cell);
+    used += 2 + std::max(verb.columns[i].width, static_cast<int>(std::string_view(cell).size()));
+  }
+  const std::string name = plain_line(shown_name(input));
+  row += "  " + shortened(name, static_cast<std::size_t>(std::max(kLeastName, kLineWidth - used - 2))) + "\n";
+  for (const std::string& line : outcome.details) row += "  " + name + ": " + plain_line(line) + "\n";
+  return row;
+}
+
+std::string sum_row(const std::vector<int>& exit_codes) {
+  std::size_t ok = 0, failed = 0;
+  for (const int code : exit_codes) {
+    ok += code == 0 ? 1 : 0;
+    failed += code == kCheckFailed ? 1 : 0;
+  }
+  const std::size_t errors = exit_codes.size() - ok - failed;
+  std::string text = std::to_string(exit_codes.size()) + (exit_codes.size() == 1 ? " file: " : " files: ");
+  text += std::to_string(ok) + " ok";
+  if (failed > 0) text += ", " + std::to_string(failed) + " failed";
+  if (errors > 0) text += ", " + std::to_string(errors) + (errors == 1 ? " error" : " errors");
+  return text + "\n";
+}
+
+std::string message_of(const FileOutcome& outcome) {
+  std::string text;
+  for (const Error& error : outcome.errors) text += (text.empty() ? "" : "\n") + error.message();
+  for (const std::string& line : outcome.details) text += (text.empty() ? "" : "\n") + line;
+  return text;
+}
+
+/// docs/schemas/bulk.schema.json: an entry.
+void write_entry(JsonWriter& json, const BulkInput& input, const FileOutcome& outcome) {
+  json.begin_object();
+  json.field("file", shown_name(input));
+  json.field("exit_code", outcome.exit_code);
+  json.text_or_null_field("error", outcome.errors.empty() ? "" : outcome.errors.front().message());
+  json.key("result");
+  if (outcome.text.empty()) {
+    json.null();
+  } else {
+    write_document(json, outcome.text, 3);
+  }
+  json.end_object();
+}
+
+/// How many files may be worked on at a time: as many as there are threads, fewer where the largest of them together
+/// would need more memory than there is. One is always worked on, as if it had been given alone.
+std::size_t files_at_once(const std::vector<BulkInput>& files, std::uint64_t max_memory) {
+  std::uint64_t limit = max_memory;
+  if (limit == 0) {
+    const auto available = available_memory();
+    if (!available) return thread_limit();
+    limit = *available + resident_memory();
+  }
+  std::vector<std::uint64_t> needs;
+  for (const BulkInput& input : files) {
+    const std::uint64_t bytes =
+        app::weigh_scene(input.path) + (input.source.empty() ? 0 : app::weigh_scene(input.source));
+    needs.push_back(std::min(bytes, ~std::uint64_t{0} / kMemoryPerByte) * kMemoryPerByte);
+  }
+  std::sort(needs.rbegin(), needs.rend());
+  std::uint64_t sum = kMemoryOfProcess;
+  std::size_t count = 0;
+  while (count < std::min(needs.size(), thread_limit()) && sum <= limit && needs[count] <= limit - sum) {
+    sum += needs[count++];
+  }
+  return std::max<std::size_t>(1, count);
+}
+
+FileOutcome work_on(const BulkVerb& verb, const BulkInput& input) {
+  FileOutcome outcome;
+  if (!input.error.empty()) {
+    outcome.fail({static_cast<ErrorCode>(input.exit_code), "", input.error});
+    return outcome;
+  }
+  const auto done = guarded(input.path, [&]() -> Result<bool> {
+    outcome = verb.work(input);
+    outcome.errors.insert(outcome.errors.end(), outcome.late_errors.begin(), outcome.late_errors.end());
+    return true;
+  });
+  if (!done) {
+    outcome = {};
+    outcome.fail(done.error());
+  }
+  return outcome;
+}
+
+BulkInput input_of(const app::JobResult& r, ManifestSide side) {
+  if (side == ManifestSide::kScenes) return {r.job.input.string()};
+  BulkInput input{r.job.output.string(), r.job.input.string()};
+  if (r.has_asset()) return input;
+  input.exit_code = r.exit_code != 0 ? r.exit_code : static_cast<int>(ErrorCode::kIo);
+  input.error = r.job.output.string() + ": no asset was made: " + (r.error.empty() ? "skipped" : r.error);
+  return input;
+}
+
+}  // namespace
+
+void write_document(JsonWriter& json, std::string_view document, std::size_t depth) {
+  std::string inner;
+  document.remove_suffix(1);  // the line break at its end; no string in it has one
+  for (const char c : document) {
+    inner += c;
+    if (c == '\n') inner.append(2 * depth, ' ');
+  }
+  json.raw(inner);
+}
+
+int FileOutcome::fail(Error error) {
+  exit_code = std::max(exit_code, static_cast<int>(error.code));
+  errors.push_back(std::move(error));
+  return exit_code;
+}
+
+int FileOutcome::print(const std::string& report) const {
+  std::fputs(notes.c_str(), stderr);
+  for (const Error& error : errors) print_error(error);
+  if (!text.empty()) {
+    const Status written = write_output(report, text);
+    if (!written) return print_error(written.error());
+  }
+  for (const Error& error : late_errors) print_error(error);
+  return exit_code;
+}
+
+void add_bulk_inputs(OptionParser& parser, BulkWords& words, const char* name, const char* help,
+                     const char* manifest_help) {
+  words.name = name;
+  parser.add_positionals(name, words.files, help, false);
+  parser.group("Input");
+  parser.add_value("--manifest FILE", words.manifest, manifest_help);
+}
+
+void add_bulk_outputs(OptionParser& parser, BulkWords& words) {
+  parser.add_value("--junit FILE", words.junit, "write a JUnit file with one test case per file (default: none)");
+}
+
+void add_bulk_resources(OptionParser& parser, BulkWords& words) {
+  add_jobs_option(parser, words.jobs);
+  parser.add_value("--max-memory SIZE", words.max_memory,
+                   "of many files, work on fewer at a time where they would need more, such as 8GiB; auto: what the "
+                   "machine has left");
+}
+
+Result<BulkInputs> find_bulk_inputs(const Verb& verb, const BulkWords& words, app::InputKind kind, ManifestSide side) {
+  if (words.files.empty() && words.manifest.empty()) {
+    return Error{ErrorCode::kUsage, "",
+                 std::string(words.name) + " is required; see meshlode " + verb.name + " --help"};
+  }
+  BulkInputs inputs;
+  std::error_code error;
+  const bool is_named = words.files.size() == 1 && words.manifest.empty();
+  inputs.is_single =
+      is_named && !std::filesystem::is_directory(words.files.front(), error) && !app::is_pattern(words.files.front());
+  for (const std::string& word : words.files) {
+    TRY_LET(found, app::find_inputs(word, kind));
+    const bool is_found = std::filesystem::is_directory(word, error) || app::is_pattern(word);
+    for (const std::filesystem::path& file : found->files) {
+      inputs.files.push_back({file.string(), {}, found->base.string(), is_found});
+    }
+  }
+  if (!words.manifest.empty()) {
+    TRY(check_is_manifest(words.manifest));
+    TRY_LET(manifest, app::read_manifest(words.manifest));
+    if (const auto id = find_file_id(words.manifest)) output_files().keep(*id);
+    for (const app::JobResult& r : manifest->results) inputs.files.push_back(input_of(r, side));
+  }
+  if (inputs.files.empty()) {
+    return Error{ErrorCode::kIo, words.manifest.empty() ? words.files.front() : words.manifest,
+                 kind == app::InputKind::kScenes ? "no scene in it" : "no asset in it"};
+  }
+  if (inputs.is_single) {
+    if (!words.junit.empty()) inputs.is_single = false;  // its rows beside it
+    return inputs;
+  }
+  for (const BulkInput& input : inputs.files) {
+    if (input.path == kStream) return Error{ErrorCode::kUsage, "", "stdin is one file: give it alone"};
+    for (const std::string& path : {input.path, input.source}) {
+      if (const auto id = path.empty() ? std::nullopt : find_file_id(path)) output_files().keep(*id);
+    }
+  }
+  return inputs;
+}
+
+int run_bulk(const BulkVerb& verb, const std::vector<BulkInput>& files, const BulkWords& words,
+             const OutputOptions& output, const std::string& report) {
+  const auto max_memory = parse_max_memory(words.max_memory);
+  if (!max_memory) return print_error(max_memory.error());
+  if (!words.junit.empty()) {
+    if (const Status name = check_text_name("--junit", words.junit, {".xml"}); !name) return print_error(name.error());
+    if (const Status free = output_files().claim(words.junit); !free) return print_error(free.error());
+  }
+  int worst = 0;
+  const auto take = [&](const Status& done) {
+    if (!done) worst = std::max(worst, print_error(done.error()));
+  };
+  const bool is_streamed = report == kStream && !output.json();
+  std::string text;
+  JsonWriter json;
+  json.begin_object();
+  if (!verb.has_bare_documents) json.field("verb", verb.name);
+  json.key("files");
+  json.begin_array();
+  const auto say = [&](const std::string& rows) {
+    text += rows;
+    if (!is_streamed || text.empty()) return;
+    take(write_stdout(text));
+    text.clear();
+  };
+  if (!output.json() && !output.quiet) say(head_row(verb));
+
+  std::vector<std::optional<FileOutcome>> done(files.size());
+  std::vector<int> exit_codes;
+  std::vector<app::TestCase> tests(files.size());
+  std::mutex mutex;
+  std::size_t next = 0;  // the first file that is not yet told of
+  const auto tell = [&](std::size_t i) {
+    const FileOutcome& outcome = *done[i];
+    std::fputs(outcome.notes.c_str(), stderr);
+    for (const Error& error : outcome.errors) print_error(error);
+    exit_codes.push_back(outcome.exit_code);
+    worst = std::max(worst, outcome.exit_code);
+    tests[i].name = shown_name(files[i]);
+    tests[i].exit_code = outcome.exit_code;
+    tests[i].text = message_of(outcome);
+    if (output.json() && verb.has_bare_documents) {
+      if (!outcome.text.empty()) write_document(json, outcome.text, 2);
+    } else if (output.json()) {
+      write_entry(json, files[i], outcome);
+    } else if (!output.quiet || !outcome.details.empty()) {
+      say(row_of(verb, files[i], outcome));
+    }
+  };
+  JobLimit limit(words.jobs);
+  limit.run([&] {
+    parallel_for_each_in_order(files.size(), files_at_once(files, *max_memory), [&](std::size_t i) {
+      const auto start = std::chrono::steady_clock::now();
+      FileOutcome outcome = work_on(verb, files[i]);
+      const std::lock_guard lock(mutex);
+      tests[i].seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+      done[i] = std::move(outcome);
+      for (; next < files.size() && done[next]; ++next) {
+        tell(next);
+        done[next] = FileOutcome{};  // it may hold much
+      }
+    });
+  });
+  json.end_array();
+  if (!verb.has_bare_documents) json.field("exit_code", worst);
+  json.end_object();
+  if (output.json()) text = json.text();
+  if (!output.json() && !output.quiet) say(sum_row(exit_codes));
+  if (!is_streamed) take(write_output(report, text));
+  if (!words.junit.empty()) take(write_text(words.junit, app::junit_xml(verb.name, tests)));
+  return worst;
+}
+
+}  // namespace meshlode::cli

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A verb of one file over many: files, folders, patterns and manifests. Several files are worked on at a time; what is
+// said of them comes in the order in which they were given, for any number of threads.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <meshlode/result.h>
+
+#include "app/batch/jobs/find_inputs.h"
+#include "base/json_writer.h"
+#include "options.h"
+
+namespace meshlode::cli {
+
+/// What a verb says of one file, kept until it is its turn to be printed.
+struct FileOutcome {
+  int exit_code = 0;
+  std::vector<Error> errors;         ///< for stderr
+  std::vector<Error> late_errors;    ///< for stderr, after the text
+  std::string notes;                 ///< for stderr, as they are (--explain)
+  std::string text;                  ///< what is printed of one file alone: text, or with --format json its document
+  std::vector<std::string> cells;    ///< of several files: its row, as many as there are columns, or none
+  std::vector<std::string> details;  ///< of several files: lines below the row; `file` is put before them
+
+  /// Keeps an error. \returns its exit code, which is the file's where it is the worst
+  int fail(Error error);
+  /// Errors, notes and text where one file was given: as if they had been printed at once. `report`: where the text
+  /// goes, "-" for stdout. \returns the exit code
+  [[nodiscard]] int print(const std::string& report = "-") const;
+};
+
+struct BulkInput {
+  std::string path;
+  std::string source = {};  ///< of the manifest; empty: not known
+  std::string base = {};    ///< the folder below which it was found; empty: none, or the current one
+  bool is_found = false;    ///< below a folder or by a pattern
+  /// A file of a manifest that no asset was made of, and why.
+  int exit_code = 0;
+  std::string error = {};
+};
+
+struct BulkWords {
+  const char* name = "FILE";
+  std::vector<std::string> files;
+  std::string manifest, junit, max_memory = "auto";
+  std::uint32_t jobs = 0;
+};
+
+/// What of a manifest the verb works on.
+enum class ManifestSide : std::uint8_t { kAssets, kScenes };
+
+struct BulkInputs {
+  bool is_single = false;  ///< one file by its name: the verb says what it says of one file
+  std::vector<BulkInput> files;
+};
+
+struct BulkColumn {
+  const char* name;
+  int width;
+};
+
+struct BulkVerb {
+  const char* name;
+  std::vector<BulkColumn> columns;  ///< between "result" and "file"
+  std::function<FileOutcome(const BulkInput&)> work;
+  bool has_bare_documents = false;  ///< the JSON lists the documents alone: a file that cannot be read has none
+};
+
+/// The arguments, `name` in the help, and `--manifest`.
+void add_bulk_inputs(OptionParser& parser, BulkWords& words, const char* name, const char* help,
+                     const char* manifest_help);
+/// `--junit`, in the group of outputs.
+void add_bulk_outputs(OptionParser& parser, BulkWords& words);
+/// `--jobs` and `--max-memory`.
+void add_bulk_resources(OptionParser& parser, BulkWords& words);
+
+/// The files that are meant, each kept from being written over. Errors: kUsage, kIo, kInvalid.
+[[nodiscard]] Result<BulkInputs> find_bulk_inputs(const Verb& verb, const BulkWords& words, app::InputKind kind,
+                                                  ManifestSide side);
+
+/// Works on all and prints a row a file, with errors on stderr, or with --format json one document. A file that fails
+/// does not stop the others. `report`: where the rows or the document go, "-" for stdout. \returns the worst exit code
+[[nodiscard]] int run_bulk(const BulkVerb& verb, const std::vector<BulkInput>& files, const BulkWords& words,
+                           const OutputOptions& output, const std::string& report = "-");
+
+/// A document of JsonWriter::text() as a value in another, with the indentation of that depth.
+void write_document(JsonWriter& json, std::string_view document, std::size_t depth);
+
+}  // namespace meshlode::cli

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// report: a batch on one page, or as what code hosts show of it.
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "app/batch/shard/read_manifest.h"
+#include "app/overview/overview.h"
+#include "base/file.h"
+#include "base/try.h"
+#include "doctor_advice.h"
+#include "file_kind.h"
+#include "options.h"
+#include "output_name.h"
+#include "outputs.h"
+#include "streams.h"
+#include "verb.h"
+
+namespace meshlode::cli {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// One file that is written, and in which form.
+struct ReportFile {
+  std::string format, path;
+};
+
+void keep(const fs::path& path) {
+  if (const auto id = find_file_id(path)) output_files().keep(*id);
+}
+
+Result<app::Manifest> read_kept(const std::string& path) {
+  TRY(check_is_manifest(path));
+  TRY_LET(manifest, app::read_manifest(path));
+  keep(path);
+  for (const app::JobResult& r : manifest->results) {
+    keep(r.job.input);
+    keep(r.job.output);
+    for (const app::Dependency& file : r.files) keep(file.path);
+  }
+  return std::move(*manifest);
+}
+
+Status claim(const ReportFile& file) {
+  if (file.format == "html") return claim_report(file.path, {".html", ".htm"});
+  if (file.format == "markdown") return claim_report(file.path, {".md", ".markdown"});
+  if (file.format == "sarif") return claim_report(file.path, {".sarif", ".json"});
+  return claim_report(file.path, {});
+}
+
+std::string text_of(const app::Overview& overview, const ReportFile& file, const std::string& title) {
+  if (file.format == "markdown") return app::overview_markdown(overview);
+  if (file.format == "sarif") return app::overview_sarif(overview);
+  if (file.format == "annotations") return app::overview_annotations(overview);
+  return app::batch_page(overview, title, file.path == kStream ? "" : fs::path(file.path).parent_path().string());
+}
+
+int run_report(const Verb& verb, std::span<char* const> args) {
+  std::string path, output = kStream, against;
+  std::optional<std::string> format;
+  std::uint32_t jobs = 0;
+  OptionParser parser(verb);
+  parser.add_positional("MANIFEST", path, "manifest that 'meshlode build --manifest' or 'meshlode merge' wrote");
+  parser.group("Output");
+  parser.add_value("-o,--output FILE|FOLDER", output,
+                   "file to write instead of stdout, which is -; into a folder, one that exists or ends in /, go "
+                   "index.html, report.md and report.sarif");
+  parser.add_value("--format", format,
+                   "html: a page for a browser; markdown: for a merge request; sarif: for code hosts; annotations: "
+                   "workflow commands (default: html)",
+                   {"html", "markdown", "sarif", "annotations"});
+  parser.group("Input");
+  parser.add_value("--against OLD", against, "manifest of an earlier batch, to show what grew (default: none)");
+  parser.group("Resources");
+  add_jobs_option(parser, jobs);
+  if (const auto exit_code = parser.parse(args)) return *exit_code;
+
+  auto manifest = read_kept(path);
+  if (!manifest) return print_error(manifest.error());
+  std::optional<app::Manifest> old;
+  if (!against.empty()) {
+    auto read = read_kept(against);
+    if (!read) return print_error(read.error());
+    old = std::move(*read);
+  }
+  std::error_code error;
+  std::vector<ReportFile> files{{format.value_or("html"), output}};
+  if (output.ends_with('/') || fs::is_directory(output, error)) {
+    if (format) return print_error({ErrorCode::kUsage, "--format", "is of one file; a folder gets all of them"});
+    const fs::path folder = output;
+    files = {{"html", (folder / "index.html").string()},
+             {"markdown", (folder / "report.md").string()},
+             {"sarif", (folder / "report.sarif").string()}};
+  }
+  for (const ReportFile& file : files) {
+    if (const Status free = claim(file); !free) return print_error(free.error());
+  }
+  const std::string title = fs::path(path).filename().string();
+  std::optional<app::Overview> overview;
+  JobLimit limit(jobs);
+  limit.run([&] {
+    overview = app::make_overview(
+        std::move(*manifest), old ? &*old : nullptr,
+        [](const run::Asset& asset, std::vector<app::Diagnosis>& diagnoses) { add_advice(asset, diagnoses); });
+  });
+  for (const ReportFile& file : files) {
+    const Status written = write_output(file.path, text_of(*overview, file, title));
+    if (!written) return print_error(written.error());
+  }
+  return 0;
+}
+
+}  // namespace
+
+const Verb kReportVerb{
+    "report", "show a batch on one page: status, bytes, what grew, faults, times",
+    "Reads the manifest of a batch and its assets, and writes one self-contained page: counts, a table to sort and "
+    "search, what the bytes are spent on, the largest changes against an earlier batch, faults by severity, use of the "
+    "cache, times.\n\n"
+    "The same as a summary for a merge request, as SARIF 2.1.0 and as workflow commands. Paths are those of the "
+    "manifest: run it in the folder in which the batch ran. The exit status is 0 whatever the batch's was.",
+    "meshlode report out/manifest.json -o report.html\n"
+    "  meshlode report out/manifest.json --against yesterday.json -o report/\n"
+    "  meshlode report out/manifest.json --format annotations",
+    run_report};
+
+}  // namespace meshlode::cli
