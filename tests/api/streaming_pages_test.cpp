@@ -105,7 +105,7 @@ TEST(StreamingPages, ThePageShowsTheProgram) {
     EXPECT_NE(code.find(block), std::string::npos) << "not in tests/api/streaming_pages.c:\n" << block;
     ++blocks;
   }
-  EXPECT_EQ(blocks, 4);
+  EXPECT_EQ(blocks, 2);
   EXPECT_LE(std::count(code.begin(), code.end(), '\n'), 150);
 }
 
