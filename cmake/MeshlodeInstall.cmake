@@ -54,7 +54,7 @@ if(NOT MESHLODE_SANITIZE)
   target_link_options(meshlode_c PRIVATE -static-libstdc++ -static-libgcc)
 endif()
 
-install(FILES include/meshlode/format.h include/meshlode/page.h include/meshlode/decode.glsl
+install(FILES include/meshlode/format.h include/meshlode/page.h include/meshlode/page_cache.h include/meshlode/decode.glsl
               include/meshlode/result.h include/meshlode/runtime.h include/meshlode/meshlode.h include/meshlode/version.h
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/meshlode COMPONENT dev)
 

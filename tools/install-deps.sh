@@ -20,7 +20,7 @@ packages=(
 if [ "${1:-}" = --tests ]; then
   packages+=(libgtest-dev clang-14 libclang-rt-14-dev lld-14 assimp-testmodels
              git clang-format-14 clang-tidy-14             # the form of the sources
-             libzstd-dev liblz4-dev                        # pages as versions before 0.2 stored them
+             libzstd-dev liblz4-dev                        # pages of earlier development versions
              python3                                       # the independent readers of the format and of glTF
              make                                          # a stranger's project, built by what CMake takes by itself
              zsh fish mandoc man-db                        # readers of completion scripts and of man pages

@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 # quickstart.sh [SCENE]: installs what is missing, builds meshlode, turns a scene into an asset, prints its statistics,
-# proves it against its source and draws a picture of a LOD cut.
+# compares it with its source and draws a picture of a LOD cut.
 set -euo pipefail
+case ${1:-} in -h | --help) sed -n '3,4s/^# //p' "$0"; exit ;; esac
 cd "$(dirname "$0")/.."
 echo "meshlode: quickstart in $PWD"
 scene=${1:-data/rock.glb}

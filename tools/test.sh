@@ -151,6 +151,7 @@ for log in "$logs/gcc-against-clang.log" "$logs/sanitized-tests.log" "$logs/long
     tail -n 1 "$log"
   fi
 done
+tools/release-check --age
 if [ ${#failed[@]} -ne 0 ]; then
   printf 'FAILED: %s\n' "${failed[@]}"
   exit 1

@@ -102,8 +102,8 @@ def whole_table(figures):
             rows.append(["", "", f"`{ours['preset']}`", str(ours["threads"]), f"{wall:.2f}", f"{median(rounds, 'cpu'):.2f}",
                          f"{wall / base:.1f}", f"{wall / triangles * 1e6:.1f}", f"{median(rounds, 'rss') / 1e6:.0f}",
                          f"{rounds[0]['bytes'] / triangles:.2f}"])
-    return table(["model", "triangles", "program", "threads", "wall s", "CPU s", "× gltfpack", "µs a triangle", "peak MB",
-                  "bytes a triangle"], rows)
+    return table(["model", "triangles", "program", "threads", "wall s", "CPU s", "× gltfpack", "µs per triangle", "peak MB",
+                  "bytes per triangle"], rows)
 
 
 def single_thread(figures):

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The defaults of before version 0.2 (--codec none --aggregate never) and those of now, as the table of docs/log/size.md.
+"""The earlier defaults (--codec none --aggregate never) and those of now, as the table of docs/log/size.md.
 
     bench/size/defaults.py build/release/meshlode build/release/libmeshlode.so MODELS DATA [name …]
 

@@ -35,7 +35,7 @@ def main():
     tool, models, data, names = sys.argv[1], sys.argv[2], sys.argv[3], sys.argv[4:]
     runs = [(name, os.path.join(models, file), options) for name, file, options in RUNS]
     runs += [(f"{file[:-4]}, defaults", os.path.join(data, file), []) for file in sorted(os.listdir(data)) if file.endswith(".glb")]
-    print("| model | source triangles | stored | " + " | ".join(f"`{codec}`" for codec in CODECS) + " | `strips`, a stored triangle |")
+    print("| model | source triangles | stored | " + " | ".join(f"`{codec}`" for codec in CODECS) + " | `strips`, per stored triangle |")
     print("| --- " * (len(CODECS) + 4) + "|")
     for name, source, options in runs:
         if not os.path.exists(source) or (names and not any(name.startswith(n) for n in names)):

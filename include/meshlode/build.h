@@ -150,6 +150,12 @@ enum class AggregateChoice : std::uint8_t {
   kMasked,  ///< as kAuto, of pieces whose materials all have an alpha mask: masked cards
 };
 
+/// How groups follow each other inside a level, and so which of them share a page.
+enum class PageOrder : std::uint8_t {
+  kLevel,      ///< as the build made them: neighbours mostly lie together
+  kCovisible,  ///< those together that the same views need
+};
+
 /// How much time to spend on shorter triangle strips. More effort: smaller topology, same geometry.
 enum class StripEffort : std::uint8_t {
   kOfPreset,  ///< as BuildOptions::preset
@@ -188,6 +194,9 @@ struct BuildOptions {
   bool lock_borders = false;
   /// Surfaces that lie close above one another stay in order where an error comes near the gap between them.
   bool keep_layers = true;
+  std::uint32_t page_size = 128;             ///< largest page, KiB: 16, 32, 64 or 128; a larger group has its own
+  PageOrder page_order = PageOrder::kLevel;  ///< of groups inside a level
+  std::uint32_t root_bytes = 0;  ///< limit of each mesh's first page, bytes, 16,384 to 131,072; 0: as page_size
   AggregateChoice aggregate = AggregateChoice::kMasked;  ///< what is simplified by coverage
   /// kNamed: names of meshes, whose pieces of at most 512 triangles are taken, and of materials, whose pieces are.
   /// Comma-separated; '*' stands for any characters, '?' for one.

@@ -26,8 +26,8 @@
  * Ownership. Returned pointers belong to the asset and are valid until meshlode_close. Outputs go to memory of the
  * caller.
  *
- * Thread safety. Any number of threads may use an asset at once, except while one calls meshlode_choose_promise or
- * meshlode_close.
+ * Thread safety. Any number of threads may use an asset at once, each with a selector of its own, except while one
+ * calls meshlode_choose_promise or meshlode_close.
  *
  * Not promised: a stable ABI before version 1 (docs/reference/compatibility.md); caching (a page loaded twice is
  * unpacked twice).
@@ -94,6 +94,28 @@ MESHLODE_API meshlode_status meshlode_open_file(const char* path, meshlode_asset
 /** Opens an asset in memory. The bytes must outlive the asset, stay unchanged, and be aligned to 8. Errors as above. */
 MESHLODE_API meshlode_status meshlode_open_buffer(const void* bytes, size_t size, meshlode_asset** asset,
                                                   meshlode_error* error);
+
+/** Bytes of the file. */
+typedef struct meshlode_range {
+  uint64_t offset; /**< from the start of the file */
+  uint64_t bytes;  /**< length */
+} meshlode_range;
+
+/** How many of a file's first bytes meshlode_open_head needs: all that lies before its pages and images. `first` are
+ * the first `size` bytes, at any address, of a file of `file_bytes`. On success `*needed` is the size of the head.
+ * MESHLODE_TOO_SMALL: to say it, `*needed` of the first bytes are needed; ask again with them. `*needed` is never above
+ * `file_bytes`. Other errors: MESHLODE_INVALID with the place; MESHLODE_UNSUPPORTED for a newer version, or where
+ * tables lie behind pages or images, which `meshlode build` never writes. */
+MESHLODE_API meshlode_status meshlode_head_bytes(const void* first, size_t size, uint64_t file_bytes, uint64_t* needed,
+                                                 meshlode_error* error);
+
+/** Opens an asset by its head: the first bytes of a file of `file_bytes`, as many as meshlode_head_bytes says or more.
+ * Tables, texts and selections are as those of the whole file. meshlode_load_page and meshlode_view_page fail, and
+ * meshlode_blob_bytes is NULL: pages and images are for the caller to read (meshlode_page_range, meshlode_unpack_page,
+ * meshlode_blob_range, meshlode_check_blob). The bytes must outlive the asset, stay unchanged, and be aligned to 8.
+ * Errors: those of meshlode_open_buffer; MESHLODE_INVALID where the head is cut off. */
+MESHLODE_API meshlode_status meshlode_open_head(const void* bytes, size_t size, uint64_t file_bytes,
+                                                meshlode_asset** asset, meshlode_error* error);
 
 /** Closes an asset. NULL is allowed. */
 MESHLODE_API void meshlode_close(meshlode_asset* asset);
@@ -278,8 +300,23 @@ MESHLODE_API const meshlode_blob* meshlode_blobs(const meshlode_asset* asset, ui
  * is not one of this asset's. */
 MESHLODE_API const char* meshlode_text(const meshlode_asset* asset, meshlode_string string, size_t* bytes);
 
-/** The bytes of an image or buffer as they were in the source. NULL and 0 if there is no such blob. */
+/** The bytes of an image or buffer as they were in the source. NULL and 0 if there is no such blob, or of a head. */
 MESHLODE_API const void* meshlode_blob_bytes(const meshlode_asset* asset, uint32_t blob, size_t* bytes);
+
+/** Where they lie in the file; zeros if there is no such blob. */
+MESHLODE_API meshlode_range meshlode_blob_range(const meshlode_asset* asset, uint32_t blob);
+
+/** Checks bytes of a blob that the caller read, by their number and checksum. Errors: MESHLODE_USAGE no such blob, or
+ * another number of bytes; MESHLODE_INVALID. */
+MESHLODE_API meshlode_status meshlode_check_blob(const meshlode_asset* asset, uint32_t blob, const void* bytes,
+                                                 size_t size, meshlode_error* error);
+
+/** The glTF image of a glTF texture, such as meshlode_material.base_color_texture, and the blob that is a glTF image;
+ * MESHLODE_NONE where there is none, or the asset does not hold the image. They read meshlode_scene_json from its
+ * start: ask once. */
+MESHLODE_API uint32_t meshlode_image_of_texture(const meshlode_asset* asset, uint32_t texture);
+/** See meshlode_image_of_texture. */
+MESHLODE_API uint32_t meshlode_blob_of_image(const meshlode_asset* asset, uint32_t image);
 
 /** JSON, `*bytes` long, not terminated: source, settings, plan, what was left out. */
 MESHLODE_API const char* meshlode_meta_json(const meshlode_asset* asset, size_t* bytes);
@@ -304,7 +341,7 @@ MESHLODE_API meshlode_status meshlode_choose_promise(meshlode_asset* asset, uint
 /* ----------------------------------------------------------------------------------------------------- selecting */
 
 /** Where the scene is seen from. The rule looks at distances only: a view direction plays no part, and nothing is
- * culled. */
+ * culled but by a meshlode_frustum. */
 typedef struct meshlode_view {
   double eye[3];        /**< world space; unused if orthographic */
   int is_orthographic;  /**< 0: perspective */
@@ -332,6 +369,61 @@ typedef struct meshlode_draw_item {
 MESHLODE_API meshlode_status meshlode_select_view(const meshlode_asset* asset, const meshlode_view* view,
                                                   double pixel_error, meshlode_draw_item* items, size_t capacity,
                                                   size_t* count, meshlode_error* error);
+
+/** The view volume, world space: a point p is inside where a p.x + b p.y + c p.z + d >= 0 for each plane a, b, c, d.
+ * Planes may have any length and look any way; one of zeros has everything inside. */
+typedef struct meshlode_frustum {
+  double planes[6][4]; /**< finite */
+} meshlode_frustum;
+
+/** The view volume of a camera: four sides and the plane through the eye, and no far one. `target` is a point that it
+ * looks at and `up` points to the top of the picture; `aspect` is width over height. Errors: MESHLODE_USAGE for a
+ * member of `view` outside its range, or what makes no picture. */
+MESHLODE_API meshlode_status meshlode_make_frustum(const meshlode_view* view, const double target[3],
+                                                   const double up[3], double aspect, meshlode_frustum* frustum,
+                                                   meshlode_error* error);
+
+/** meshlode_select_view less the items whose culling sphere is outside `frustum`; NULL culls nothing. */
+MESHLODE_API meshlode_status meshlode_select_frustum(const meshlode_asset* asset, const meshlode_view* view,
+                                                     const meshlode_frustum* frustum, double pixel_error,
+                                                     meshlode_draw_item* items, size_t capacity, size_t* count,
+                                                     meshlode_error* error);
+
+/** What chooses with only some pages loaded: the links of an asset's DAG and the memory of a search. One per thread;
+ * the asset must outlive it. */
+typedef struct meshlode_selector meshlode_selector;
+
+/** Takes all memory that selecting needs, so that no frame does. */
+MESHLODE_API meshlode_status meshlode_create_selector(const meshlode_asset* asset, meshlode_selector** selector,
+                                                      meshlode_error* error);
+/** NULL is allowed. */
+MESHLODE_API void meshlode_destroy_selector(meshlode_selector* selector);
+
+/** A page that a view wants and that is not resident. */
+typedef struct meshlode_page_request {
+  uint32_t page;  /**< into meshlode_pages */
+  float priority; /**< see meshlode_page_priorities */
+} meshlode_page_request;
+
+/** Chooses what to draw with the pages at hand. What is drawn covers each piece of each instance's surface exactly once
+ * where the pages with terminal groups are resident, and as finely as resident pages allow; with all pages resident it
+ * is what meshlode_select_frustum chooses. Takes no memory. `resident` are as many words as there are pages, divided by
+ * 32 and rounded up: page p is resident if and only if bit p % 32 of word p / 32 is set; NULL: none is. `frustum` may
+ * be NULL: nothing is culled. Items, capacity, count and errors as for meshlode_select_view. */
+MESHLODE_API meshlode_status meshlode_select_resident(meshlode_selector* selector, const meshlode_view* view,
+                                                      const meshlode_frustum* frustum, double pixel_error,
+                                                      const uint32_t* resident, meshlode_draw_item* items,
+                                                      size_t capacity, size_t* count, meshlode_error* error);
+
+/** Of the last selection: wanted pages that are not resident, `*count` of them, by falling priority, then by id. A page
+ * comes behind all pages that it is of no use without. Valid until the next selection. */
+MESHLODE_API const meshlode_page_request* meshlode_page_requests(const meshlode_selector* selector, size_t* count);
+
+/** Of the last selection, per page, resident or not: what is lost without it. The largest projected error in pixels of
+ * its groups that do not pass and are inside the frustum, and of what depends on them; 0: this view does not want it,
+ * so evict it first. MESHLODE_INFINITE_ERROR: it holds a terminal group of a mesh that has an instance; keep it always.
+ */
+MESHLODE_API const float* meshlode_page_priorities(const meshlode_selector* selector, size_t* count);
 
 /** Chooses the cut of one mesh without a camera: each group whose error is at most `max_error` (object units; infinity
  * is allowed) is replaced. `*stored_error` (may be NULL) gets the largest error in the cut, at least level0_deviation
@@ -362,14 +454,24 @@ MESHLODE_API meshlode_status meshlode_streaming_order(const meshlode_asset* asse
 MESHLODE_API meshlode_status meshlode_load_page(const meshlode_asset* asset, uint32_t page, void* out, size_t capacity,
                                                 meshlode_error* error);
 
-/** The same without a copy: checks the page and returns its bytes in the asset. Errors: as above, and
+/** Where a page lies in the file; zeros if there is no such page. */
+MESHLODE_API meshlode_range meshlode_page_range(const meshlode_asset* asset, uint32_t page);
+
+/** meshlode_load_page from stored bytes that the caller read: `size` bytes at any address, those of
+ * meshlode_page_range. Both checksums and the whole page are checked. Errors: as for meshlode_load_page, and
+ * MESHLODE_USAGE for another number of bytes. After MESHLODE_INVALID the content of `out` is undefined. */
+MESHLODE_API meshlode_status meshlode_unpack_page(const meshlode_asset* asset, uint32_t page, const void* stored,
+                                                  size_t size, void* out, size_t capacity, meshlode_error* error);
+
+/** meshlode_load_page without a copy: checks the page and returns its bytes in the asset. Errors: as above, and
  * MESHLODE_UNSUPPORTED if the page is stored compressed, as `meshlode build` does by default: `--codec none`, there or
  * with `meshlode repack`, stores every page so that it can be viewed. */
 MESHLODE_API meshlode_status meshlode_view_page(const meshlode_asset* asset, uint32_t page, const void** out,
                                                 meshlode_error* error);
 
-/** What meshlode_decode_* reads: the bytes of a page exactly as meshlode_load_page or meshlode_view_page of this asset
- * returned them. They are not checked again: with other bytes the behaviour is undefined. */
+/** What meshlode_decode_* reads: the bytes of a page exactly as meshlode_load_page, meshlode_unpack_page or
+ * meshlode_view_page of this asset returned them. They are not checked again: with other bytes the behaviour is
+ * undefined. */
 typedef struct meshlode_page_bytes {
   uint32_t page;     /**< id of the page */
   const void* bytes; /**< its decoded bytes */

@@ -20,8 +20,9 @@
 /// tables, loading a page checks the page. After that nothing can crash, hang or read outside. No exception leaves but
 /// std::bad_alloc.
 ///
-/// Thread safety. Any number of threads may call const members of an AssetFile or a PageBytes at once. Calling
-/// choose_promise, moving or destroying one while another thread uses it is a race.
+/// Thread safety. Any number of threads may call const members of an AssetFile or a PageBytes at once; each selects
+/// with a ResidentSelector of its own. Calling choose_promise, moving or destroying one while another thread uses it is
+/// a race.
 ///
 /// Not promised: caching (a page loaded twice is unpacked twice); the layout of records in a later format version; a
 /// stable ABI before version 1 (docs/reference/compatibility.md).
@@ -42,7 +43,7 @@
 namespace meshlode {
 
 /// Where the scene is seen from. The rule looks at distances only: a view direction plays no part, and nothing is
-/// culled.
+/// culled but by a Frustum.
 struct View {
   std::array<double, 3> eye{0.0, 0.0, 0.0};   ///< world space; unused if orthographic
   bool is_orthographic = false;               ///< else perspective
@@ -52,10 +53,34 @@ struct View {
   std::uint32_t height_px = 720;              ///< height of the picture, at least 1
 };
 
+/// The view volume, world space: a point p is inside where a·p.x + b·p.y + c·p.z + d >= 0 for each plane (a, b, c, d).
+/// Planes may have any length and look any way; one of zeros has everything inside.
+struct Frustum {
+  std::array<std::array<double, 4>, 6> planes{};  ///< finite
+};
+
+/// The view volume of a camera: four sides and the plane through the eye, and no far one. `target` is a point that it
+/// looks at and `up` points to the top of the picture; `aspect` is width over height. Errors: kUsage for a member of
+/// `view` outside its range, an aspect that is not above 0, or directions that are not finite or have no picture.
+[[nodiscard]] Result<Frustum> make_frustum(const View& view, const std::array<double, 3>& target,
+                                           const std::array<double, 3>& up, double aspect);
+
 /// Draw this cluster with this instance's transform.
 struct DrawItem {
   std::uint32_t instance;  ///< into AssetFile::instances()
   std::uint32_t cluster;   ///< into AssetFile::clusters()
+};
+
+/// A page that a view wants and that is not resident.
+struct PageRequest {
+  std::uint32_t page;  ///< into AssetFile::pages()
+  float priority;      ///< see ResidentSelector::page_priorities
+};
+
+/// Bytes of the file.
+struct ByteRange {
+  std::uint64_t offset = 0;  ///< from the start of the file
+  std::uint64_t bytes = 0;   ///< length
 };
 
 /// One mesh at one error everywhere, without a camera.
@@ -103,6 +128,50 @@ struct ClusterFloats {
   std::vector<std::uint32_t> triangle_materials;       ///< per triangle, into AssetFile::materials()
 };
 
+/// Chooses what to draw of what is loaded, and says what to load: see AssetFile::resident_selector. It holds the links
+/// of the asset's DAG and the memory of a search. Movable; one per thread; the asset must outlive it.
+class ResidentSelector {
+ public:
+  ResidentSelector(ResidentSelector&&) noexcept;             ///< leaves the other one empty
+  ResidentSelector& operator=(ResidentSelector&&) noexcept;  ///< leaves the other one empty
+  ~ResidentSelector();
+
+  /// Chooses what to draw for `view` with the pages at hand, ascending by (instance, cluster). What is drawn covers
+  /// each piece of each instance's surface exactly once where the pages with terminal groups are resident, and as
+  /// finely as resident pages allow; with all pages resident it is what AssetFile::select_view chooses.
+  ///
+  /// Page p is resident iff bit p % 32 of word p / 32 of `resident` is set; pages behind its end are not. `items` gets
+  /// what is drawn, and takes memory only where it has to grow. Without a frustum nothing is culled; with one, items
+  /// whose culling sphere is outside are left out, and pages that only such clusters want are not asked for. Errors:
+  /// kUsage if pixel_error or a member of `view` is outside its range.
+  [[nodiscard]] Status select(const View& view, double pixel_error, std::span<const std::uint32_t> resident,
+                              std::vector<DrawItem>& items, const Frustum* frustum = nullptr);
+
+  /// Of the last call: wanted pages that are not resident, by falling priority, then by id. A page comes behind all
+  /// pages that it is of no use without.
+  [[nodiscard]] std::span<const PageRequest> requests() const;
+  /// Of the last call, per page, resident or not: what is lost without it. The largest projected error in pixels of its
+  /// groups that do not pass and are inside the frustum, and of what depends on them; 0: this view does not want it, so
+  /// evict it first. format::kInfiniteError: it holds a terminal group of a mesh that has an instance; keep it always.
+  [[nodiscard]] std::span<const float> page_priorities() const;
+
+ private:
+  friend class AssetFile;
+  struct State;
+  explicit ResidentSelector(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+/// How many of a file's first bytes AssetFile::view_head needs.
+struct HeadSize {
+  std::uint64_t bytes = 0;  ///< at most those of the file
+  bool is_known = false;    ///< false: find_head has to see this many of the first bytes to say it
+};
+/// From the first bytes of a file, as many as there are, at any address. 64 bytes say how long the section table is;
+/// with it the answer is known. Errors: kInvalid with the place; kUnsupported for a newer version, or where tables lie
+/// behind pages or images, which this writer's never do.
+[[nodiscard]] Result<HeadSize> find_head(std::span<const std::uint8_t> first, std::uint64_t file_bytes);
+
 /// An open asset. Movable, not copyable; views of its tables stay valid when it is moved.
 class AssetFile {
  public:
@@ -113,6 +182,14 @@ class AssetFile {
   [[nodiscard]] static Result<AssetFile> view(std::span<const std::uint8_t> bytes);
   /// Takes the bytes.
   [[nodiscard]] static Result<AssetFile> take(std::vector<std::uint8_t> bytes);
+
+  /// Views the head of a file: its first bytes, as many as find_head says or more. All tables, texts and selections
+  /// work; load_page fails and blob_bytes is empty, as pages and images are for the caller to read: page_range,
+  /// unpack_page, blob_range, check_blob. The bytes must outlive the asset and lie at a multiple of 8. Errors: those of
+  /// open, and kInvalid where the head is cut off.
+  [[nodiscard]] static Result<AssetFile> view_head(std::span<const std::uint8_t> bytes, std::uint64_t file_bytes);
+  /// Takes the bytes.
+  [[nodiscard]] static Result<AssetFile> take_head(std::vector<std::uint8_t> bytes, std::uint64_t file_bytes);
 
   AssetFile(AssetFile&&) noexcept;             ///< leaves the other one empty
   AssetFile& operator=(AssetFile&&) noexcept;  ///< closes this one first
@@ -135,8 +212,17 @@ class AssetFile {
   [[nodiscard]] std::span<const format::PromiseGroupRecord> promise_errors() const;
   /// Text of a record's StringRef, UTF-8 as the source had it.
   [[nodiscard]] std::string_view text(format::StringRef ref) const;
-  /// An image's or buffer's bytes as they were in the source. \pre `blob` is a record of this asset
+  /// An image's or buffer's bytes as they were in the source; empty of a head. \pre `blob` is a record of this asset
   [[nodiscard]] std::span<const std::uint8_t> blob_bytes(const format::BlobRecord& blob) const;
+  /// Where they lie in the file. \pre `blob` is a record of this asset
+  [[nodiscard]] ByteRange blob_range(const format::BlobRecord& blob) const;
+  /// Checks bytes that the caller read, by their number and checksum. Errors: kUsage, kInvalid.
+  [[nodiscard]] Status check_blob(std::uint32_t blob, std::span<const std::uint8_t> bytes) const;
+  /// The glTF image of a glTF texture, such as MaterialRecord::base_color_texture; format::kNone without. Reads
+  /// scene_json() from its start: ask once.
+  [[nodiscard]] std::uint32_t image_of_texture(std::uint32_t texture) const;
+  /// The blob that is a glTF image; format::kNone where the asset does not hold it. Ask once.
+  [[nodiscard]] std::uint32_t blob_of_image(std::uint32_t image) const;
   /// JSON: source, settings, plan, what was left out.
   [[nodiscard]] std::string_view meta_json() const;
   /// JSON in the shape of glTF: nodes, materials, textures, cameras, animations.
@@ -151,15 +237,24 @@ class AssetFile {
   /// Chooses the clusters to draw for `view`, ascending by (instance, cluster). No point of the surface is displaced by
   /// more than max(pixel_error, MeshRecord::level0_deviation in pixels), as far as the mesh's error tier guarantees.
   /// Every piece of each instance's surface is covered exactly once, without cracks within a mesh. Reads tables only:
-  /// the pages of the result (page_of) need not be loaded yet. No frustum or occlusion culling. Singular instances are
+  /// the pages of the result (page_of) need not be loaded yet. No occlusion culling. Singular instances are
   /// skipped. \param view         the camera \param pixel_error  allowed displacement in pixels, finite and at least 0;
-  /// 0 selects the finest level \return kUsage if pixel_error or a member of `view` is outside its range
-  [[nodiscard]] Result<std::vector<DrawItem>> select_view(const View& view, double pixel_error) const;
+  /// 0 selects the finest level \param frustum  null: nothing is culled; else items whose culling sphere is outside are
+  /// left out \return kUsage if pixel_error or a member of `view` is outside its range
+  [[nodiscard]] Result<std::vector<DrawItem>> select_view(const View& view, double pixel_error,
+                                                          const Frustum* frustum = nullptr) const;
+
+  /// For choosing with only some pages loaded. Takes all memory that selecting needs, so that no frame does.
+  [[nodiscard]] ResidentSelector resident_selector() const;
 
   /// Chooses the cut of one mesh in which each group with an error of at most `max_error` (object units) is replaced.
   /// \return kUsage for a mesh that does not exist or a max_error that is not a number of at least 0 (infinity: the
   /// coarsest cut)
   [[nodiscard]] Result<UniformCut> select_uniform(std::uint32_t mesh, double max_error) const;
+
+  /// An order in which to load all pages: each behind those that it depends on, and those with the largest errors
+  /// first, over all meshes.
+  [[nodiscard]] std::vector<std::uint32_t> streaming_order() const;
 
   /// The page that holds a cluster. \pre cluster < clusters().size()
   [[nodiscard]] std::uint32_t page_of(std::uint32_t cluster) const;
@@ -167,6 +262,14 @@ class AssetFile {
   /// Unpacks and checks a page. Errors: kUsage no such page; kInvalid with the place; kUnsupported for a codec that was
   /// not built in.
   [[nodiscard]] Result<PageBytes> load_page(std::uint32_t page) const;
+
+  /// Where a page lies in the file. \pre page < pages().size()
+  [[nodiscard]] ByteRange page_range(std::uint32_t page) const;
+  /// Unpacks and checks a page from stored bytes that the caller read, at any address, into memory of the caller, which
+  /// must outlive the result: PageRecord::bytes / 4 words. Errors: as for load_page, and kUsage for a wrong number of
+  /// bytes or too little room. After an error the content of `out` is undefined.
+  [[nodiscard]] Result<PageBytes> unpack_page(std::uint32_t page, std::span<const std::uint8_t> stored,
+                                              std::span<std::uint32_t> out) const;
 
   /// Decodes a cluster of a loaded page; reuses the memory of `out`. Errors: kUsage if the page is another than the
   /// cluster's.

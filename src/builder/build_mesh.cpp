@@ -15,6 +15,7 @@
 #include "builder/hooks.h"
 #include "builder/measure/measure.h"
 #include "builder/needs.h"
+#include "builder/order/covisible_order.h"
 #include "builder/prepare/prepare.h"
 #include "builder/promise/measure_promise.h"
 #include "builder/promise/painted_source.h"
@@ -142,8 +143,9 @@ Result<BuiltMesh> build_mesh(const Source& from, std::size_t index, const Survey
   }
   built.clock.end(Stage::kMeasure);
 
-  const Hierarchy hierarchy =
+  Hierarchy hierarchy =
       build_hierarchy(*dag, *mesh, options.hooks != nullptr ? options.hooks->enclosing_ball : enclosing_ball);
+  if (options.page_order == PageOrder::kCovisible) order_by_covisibility(*dag, hierarchy);
   built.clock.end(Stage::kHierarchy);
 
   TRY_LET(encoded, encode_mesh(*mesh, *dag, hierarchy, encoding));

@@ -34,6 +34,7 @@ struct MeshOptions {
   bool operator==(const MeshOptions&) const = default;
 };
 
+constexpr std::uint32_t kUsualPageKib = 128, kFewestRootBytes = 16384;
 constexpr std::uint32_t kUsualGroupClusters = 20, kFewestGroupClusters = 4, kMostGroupClusters = 32;
 
 /// What is said once for all meshes.
@@ -50,6 +51,9 @@ struct SceneOptions {
   std::uint32_t max_cluster_triangles = 128;  ///< I2; at most format::kMaxClusterTriangles
   std::uint32_t max_cluster_vertices = 256;   ///< I2; at most format::kMaxClusterVertices
   std::uint32_t group_clusters = kUsualGroupClusters;  ///< what groups aim at, kFewestGroupClusters to 32
+  std::uint32_t page_kib = kUsualPageKib;              ///< largest page: 16, 32, 64 or 128
+  PageOrder page_order = PageOrder::kLevel;
+  std::uint32_t root_bytes = 0;     ///< limit of a mesh's first page, kFewestRootBytes to kMaxPageBytes; 0: as others
   std::uint64_t max_memory = 0;     ///< bytes that the process may take (builder/needs.h); 0: what the machine has
   MeshStore* mesh_store = nullptr;  ///< meshes that were built before (builder/store/mesh_store.h); the same bytes
   /// Images of materials, for aggregates (builder/aggregate/material_looks.h). None: textured meshes are no aggregates.
@@ -58,6 +62,13 @@ struct SceneOptions {
   /// One for each mesh of the scene, in the place of the whole's; empty: all as the whole.
   std::vector<MeshOptions> mesh_options;
 };
+
+constexpr bool is_page_size(std::uint32_t kib) {
+  return kib == 16 || kib == 32 || kib == 64 || kib == 128;
+}
+constexpr bool is_root_size(std::uint32_t bytes) {
+  return bytes == 0 || (bytes >= kFewestRootBytes && bytes <= format::kMaxPageBytes);
+}
 
 struct PipelineOptions : MeshOptions, SceneOptions {
   [[nodiscard]] const MeshOptions& of_mesh(std::size_t mesh) const {

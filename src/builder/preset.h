@@ -28,6 +28,12 @@ constexpr const char* name_of(StripEffort effort) {
   return name_in(kStripEffortNames, effort);
 }
 
+inline constexpr std::array<EnumName<PageOrder>, 2> kPageOrderNames{
+    {{PageOrder::kLevel, "level"}, {PageOrder::kCovisible, "covisible"}}};
+constexpr const char* name_of(PageOrder order) {
+  return name_in(kPageOrderNames, order);
+}
+
 struct PresetSettings {
   format::ErrorTier error_tier;      ///< where the caller asks for none
   std::uint32_t strip_trials;        ///< EncodeOptions::strip_trials: fewer bytes for time

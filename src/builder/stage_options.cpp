@@ -51,6 +51,10 @@ Status check_options(const PipelineOptions& options, std::size_t mesh_count) {
   if (options.group_clusters < kFewestGroupClusters || options.group_clusters > kMostGroupClusters) {
     return Error{ErrorCode::kUsage, "", "a group aims at 4 to 32 clusters"};
   }
+  if (!is_page_size(options.page_kib)) return Error{ErrorCode::kUsage, "", "a page has 16, 32, 64 or 128 KiB"};
+  if (!is_root_size(options.root_bytes)) {
+    return Error{ErrorCode::kUsage, "", "the first page has 16384 to 131072 bytes"};
+  }
   if (!options.mesh_options.empty() && options.mesh_options.size() != mesh_count) {
     return Error{ErrorCode::kUsage, "", "options of meshes are as many as there are meshes"};
   }
@@ -91,6 +95,8 @@ EncodeOptions encode_options(const SceneOptions& whole, const MeshOptions& optio
   const PresetSettings& effort = settings_of(whole.strip_effort, whole.preset);
   encode.strip_trials = effort.strip_trials;
   encode.mixed_strip_trials = effort.mixed_strip_trials;
+  encode.page_bytes = whole.page_kib * 1024;
+  encode.first_page_bytes = whole.root_bytes > 0 ? whole.root_bytes : encode.page_bytes;
   return encode;
 }
 

@@ -151,6 +151,9 @@ Json settings_json(const scene::Scene& scene, const PipelineOptions& options,
   settings["cluster_triangles"] = options.max_cluster_triangles;
   settings["cluster_vertices"] = options.max_cluster_vertices;
   if (options.group_clusters != kUsualGroupClusters) settings["group_clusters"] = options.group_clusters;
+  if (options.page_kib != kUsualPageKib) settings["page_size"] = options.page_kib;
+  if (options.page_order != PageOrder::kLevel) settings["page_order"] = name_of(options.page_order);
+  if (options.root_bytes != 0) settings["root_bytes"] = options.root_bytes;
   if (options.hooks != nullptr) settings["experimental"] = Json::parse(options.hooks->record, nullptr, false);
   put_budgets(settings, options);
   put_mesh_settings(settings, options, own);

@@ -18,8 +18,7 @@ inline constexpr std::array<EnumName<Codec>, 5> kCodecNames{{{Codec::kNone, "non
                                                              {Codec::kStrips, "strips"},
                                                              {Codec::kDraco, "draco"}}};
 
-/// Those that are written. The others were, by versions before 0.2, and are read where their readers are built in
-/// (MESHLODE_OLD_CODECS).
+/// Codecs that are written. Earlier development versions wrote the others; a build with MESHLODE_OLD_CODECS reads them.
 inline constexpr std::array<EnumName<Codec>, 2> kWrittenCodecNames{
     {{Codec::kStrips, "strips"}, {Codec::kNone, "none"}}};
 
@@ -48,7 +47,7 @@ inline constexpr std::array<EnumName<StuckReason>, 8> kStuckReasonNames{{{StuckR
 constexpr const char* name_of(Codec codec) {
   return name_in(kCodecNames, codec);
 }
-/// Of a codec that was written once: what is wrong with asking for it.
+/// The message for a codec that is no longer written.
 inline std::string not_written(std::string_view codec) {
   return "'" + std::string(codec) + "' is not written any more; choose strips or none";
 }

@@ -170,6 +170,9 @@ TEST(ApiBuild, OptionsThatMakeNoSenseAreUsageErrors) {
   expect_usage("thread_count", [](BuildOptions& o) { o.thread_count = 4097; });
   expect_usage("error_tier", [](BuildOptions& o) { o.error_tier = static_cast<format::ErrorTier>(3); });
   expect_usage("preset", [](BuildOptions& o) { o.preset = static_cast<Preset>(3); });
+  expect_usage("page_size", [](BuildOptions& o) { o.page_size = 0; });
+  expect_usage("page_order", [](BuildOptions& o) { o.page_order = static_cast<PageOrder>(2); });
+  expect_usage("root_bytes", [](BuildOptions& o) { o.root_bytes = 16383; });
   expect_usage("strip_effort", [](BuildOptions& o) { o.strip_effort = static_cast<StripEffort>(4); });
   expect_usage("attributes", [](BuildOptions& o) { o.attributes = static_cast<AttributeChoice>(3); });
   expect_usage("uv_error_unit", [](BuildOptions& o) { o.uv_error_unit = static_cast<UvErrorUnit>(2); });

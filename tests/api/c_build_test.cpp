@@ -85,6 +85,9 @@ TEST(CBuild, TheSameBytesAsInCpp) {
   options.keep_topology = 1;
   options.lock_borders = 1;
   options.keep_layers = 0;
+  options.page_size = 16;
+  options.page_order = 1;
+  options.root_bytes = 20000;
   options.aggregate = 1;
   options.position_error = 0.01;
   options.thread_count = 1;
@@ -97,6 +100,9 @@ TEST(CBuild, TheSameBytesAsInCpp) {
   same.keep_topology = true;
   same.lock_borders = true;
   same.keep_layers = false;
+  same.page_size = 16;
+  same.page_order = PageOrder::kCovisible;
+  same.root_bytes = 20000;
   same.aggregate = AggregateChoice::kAuto;
   same.position_error = 0.01;
   EXPECT_EQ(build_in_c(scene, &options), build_in_cpp(arrays, same));
@@ -150,6 +156,9 @@ TEST(CBuild, WhatMakesNoSenseIsAnErrorWithItsPlace) {
   expect(MESHLODE_INVALID, "material", [](CScene& s, O&) { s.primitive.material = 1; });
   expect(MESHLODE_USAGE, "error_tier", [](CScene&, O& o) { o.error_tier = 3; });
   expect(MESHLODE_USAGE, "preset", [](CScene&, O& o) { o.preset = 256; });
+  expect(MESHLODE_USAGE, "page_size", [](CScene&, O& o) { o.page_size = 48; });
+  expect(MESHLODE_USAGE, "page_order", [](CScene&, O& o) { o.page_order = 2; });
+  expect(MESHLODE_USAGE, "root_bytes", [](CScene&, O& o) { o.root_bytes = 131073; });
   expect(MESHLODE_USAGE, "strip_effort", [](CScene&, O& o) { o.strip_effort = 4; });
   expect(MESHLODE_USAGE, "attributes", [](CScene&, O& o) { o.attributes = 3; });
   expect(MESHLODE_USAGE, "codec", [](CScene&, O& o) { o.codec = 5; });

@@ -5,6 +5,7 @@
 #include <stdio.h>
 
 #include <meshlode/meshlode_build.h>
+#include <meshlode/page_cache.h>
 
 int use_c_runtime(void);
 int use_c_build(const float* xyz, size_t n, const uint32_t* corners, size_t m);

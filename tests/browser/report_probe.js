@@ -16,6 +16,23 @@
     check('nothing is wider than the window', root.scrollWidth <= window.innerWidth,
       root.scrollWidth + ' of ' + window.innerWidth);
 
+    const folds = Array.from(document.querySelectorAll('.fold'));
+    check('details are folded at first', folds.length !== 0 && folds.every(function (fold) { return !fold.open; }), folds.length);
+    const top = document.querySelector('#summary .cards').getBoundingClientRect().top;
+    check('the cards are on the first screen', window.innerWidth < 960 || top < 400, top);
+    const cards = Array.from(document.querySelectorAll('.card'));
+    check('three cards with a command to copy', cards.length === 3 && cards.every(function (card) {
+      return card.querySelector('.command .copy') !== null;
+    }), cards.length);
+    const isDrawn = function (card) { return document.querySelector('.cut[data-point="' + card.dataset.point + '"]') !== null; };
+    check('with its picture where the point has one', cards.some(isDrawn) && cards.every(function (card) {
+      return (card.querySelector('img') !== null) === isDrawn(card);
+    }), cards.map(isDrawn).join(' '));
+    document.querySelector('nav a[href="#points"]').click();
+    window.dispatchEvent(new Event('hashchange'));
+    check('a link unfolds its section', document.querySelector('#points .fold').open, 'it is folded');
+    folds.forEach(function (fold) { fold.open = true; });
+
     const table = document.querySelector('#points table');
     const headings = Array.from(table.tHead.rows[0].cells);
     const column = headings.findIndex(function (cell) { return cell.textContent === 'file'; });

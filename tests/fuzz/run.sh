@@ -8,7 +8,7 @@ set -uo pipefail
 root=$(cd "$(dirname "$0")/../.." && pwd)
 build=$root/build/fuzz
 seconds=${1:?run.sh SECONDS [HARNESS…]}; shift
-harnesses=("$@"); [ $# -gt 0 ] || harnesses=(reader judge codecs importer textures render verify stored)
+harnesses=("$@"); [ $# -gt 0 ] || harnesses=(reader head judge codecs importer textures render verify stored)
 jobs=${JOBS:-1}
 export ASAN_OPTIONS=detect_leaks=1:allocator_may_return_null=1 UBSAN_OPTIONS=print_stacktrace=1:halt_on_error=1
 mkdir -p "$build/findings" "$build/scratch"

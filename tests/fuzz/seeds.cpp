@@ -145,6 +145,7 @@ int main(int argc, char** argv) {
     const Bytes textured = test::sample_asset_bytes(textured_scene(images), codec);
     write(folder / "textures" / name, behind({1}, textured));
     write(folder / "render" / name, behind(near_camera, textured));
+    write(folder / "head" / name, behind({255, 0, 12, 3}, textured));
     write(folder / "verify" / name, behind({0, 0, 0, 0, 0, 0, 0, 0}, textured));
   }
   for (const auto& [codec, name] : format::kCodecNames) {
@@ -156,6 +157,7 @@ int main(int argc, char** argv) {
     for (const auto& [shape, bytes] : assets) {
       write(folder / "reader" / (shape + suffix), bytes);
       write(folder / "judge" / (shape + suffix), bytes);
+      write(folder / "head" / (shape + suffix), behind({173, 0, 30, 8}, bytes));
       write(folder / "render" / (shape + suffix), behind(shape[0] == 't' ? near_camera : far_camera, bytes));
       if (shape[0] == 's') {
         write(folder / "verify" / (shape + suffix), behind({0, 0, 0, 0, 0, 0, 0, 0}, bytes));

@@ -15,11 +15,10 @@ namespace {
 bool is_mit(const SourceFile& file) {
   static const std::set<std::string> floors = {"format", "run"};
   static const std::set<std::string> headers = {
-      "include/meshlode/format.h",      "include/meshlode/result.h",
-      "include/meshlode/runtime.h",     "include/meshlode/meshlode.h",
-      "include/meshlode/page.h",        "include/meshlode/version.h",
-      "tests/api/c_example.c",          "tests/api/first_frame.cpp",
-      "tests/install/consumer/use_c.c", "tests/install/consumer/use_runtime.cpp"};
+      "include/meshlode/format.h",   "include/meshlode/result.h",      "include/meshlode/runtime.h",
+      "include/meshlode/meshlode.h", "include/meshlode/page.h",        "include/meshlode/page_cache.h",
+      "include/meshlode/version.h",  "tests/api/c_example.c",          "tests/api/first_frame.cpp",
+      "tests/api/streaming_pages.c", "tests/install/consumer/use_c.c", "tests/install/consumer/use_runtime.cpp"};
   static const std::set<std::string> shaders = {".glsl", ".comp", ".vert", ".frag", ".mesh"};
   const std::string path = file.path.generic_string();
   if (shaders.contains(file.path.extension().string()) || path.starts_with("src/draw/gpu/shaders/")) return true;

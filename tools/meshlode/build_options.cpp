@@ -22,7 +22,7 @@ void add_build_options(OptionParser& parser, BuildWords& words) {
                      (std::string(info.help) + " (default: " + usual + ")").c_str(), app::choices_of(info.setting));
   }
   parser.group("Input");
-  parser.add_value("--scene NAME|INDEX|all", words.scene, "which scene of a glTF to use (default: the file's)");
+  add_scene_option(parser, words.scene);
   parser.add_value("--settings-root FOLDER", words.root,
                    "read every meshlode.json from FOLDER down to the scene (default: only the one beside the scene, "
                    "and with folders as input those above it)");

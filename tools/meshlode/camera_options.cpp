@@ -17,16 +17,6 @@ namespace {
 
 constexpr std::uint32_t kMaxSize = 16384;  ///< pixels a side: larger pictures do not fit the rasterizer's fixed point
 
-bool parse_size(std::string_view text, std::uint32_t& width, std::uint32_t& height) {
-  const std::size_t x = text.find('x');
-  if (x == std::string_view::npos) return false;
-  const auto parse = [](std::string_view part, std::uint32_t& out) {
-    const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), out);
-    return error == std::errc{} && end == part.data() + part.size() && out >= 1 && out <= kMaxSize;
-  };
-  return parse(text.substr(0, x), width) && parse(text.substr(x + 1), height);
-}
-
 struct WorldSphere {
   Vec3d center{0.0};
   double radius = 0.0;
@@ -116,6 +106,16 @@ Fit fit_spheres(const std::vector<WorldSphere>& spheres, const ViewFrame& view) 
 
 }  // namespace
 
+bool parse_size(std::string_view text, std::uint32_t& width, std::uint32_t& height) {
+  const std::size_t x = text.find('x');
+  if (x == std::string_view::npos) return false;
+  const auto parse = [](std::string_view part, std::uint32_t& out) {
+    const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), out);
+    return error == std::errc{} && end == part.data() + part.size() && out >= 1 && out <= kMaxSize;
+  };
+  return parse(text.substr(0, x), width) && parse(text.substr(x + 1), height);
+}
+
 void add_camera_options(OptionParser& parser, CameraOptions& options) {
   parser.add_value("--camera EX,EY,EZ,TX,TY,TZ[,FOVY[,NEAR]]", options.camera,
                    "eye, target, vertical field of view in degrees, near distance; world units (default: a view that "
@@ -123,7 +123,7 @@ void add_camera_options(OptionParser& parser, CameraOptions& options) {
   parser.add_value("--ortho HEIGHT", options.ortho_height,
                    "orthographic camera; HEIGHT of the picture in world units (default: perspective)");
   parser.add_value("--size WxH", options.size, "size of the picture in pixels, each 1 to 16384");
-  parser.add_value("--pixel-error T", options.pixel_error, "allowed error on the screen in pixels, 0 or more");
+  add_pixel_error_option(parser, options.pixel_error);
 }
 
 run::Camera frame_scene(const run::Asset& asset, std::uint32_t width, std::uint32_t height) {

@@ -6,6 +6,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include <meshlode/result.h>
 
@@ -22,6 +23,9 @@ struct CameraOptions {
   double pixel_error = 1.0;
 };
 void add_camera_options(OptionParser& parser, CameraOptions& options);
+
+/// "1280x720", each 1 to 16384; false for anything else.
+[[nodiscard]] bool parse_size(std::string_view text, std::uint32_t& width, std::uint32_t& height);
 
 /// The camera that the options mean for this asset. Errors: kUsage.
 [[nodiscard]] Result<run::Camera> make_camera(const CameraOptions& options, const run::Asset& asset);

@@ -28,6 +28,19 @@ void add_max_decoded_option(OptionParser& parser, std::string& size) {
                    "KiB, MiB, GiB, KB, MB, GB");
 }
 
+void add_scene_option(OptionParser& parser, std::string& choice) {
+  parser.add_value("--scene NAME|INDEX|all", choice, "which scene of a glTF to use (default: the file's)");
+}
+
+void add_device_option(OptionParser& parser, std::string& device) {
+  parser.add_value("--device NAME|INDEX", device,
+                   "the Vulkan device, by index or part of its name (default: the first that can)");
+}
+
+void add_pixel_error_option(OptionParser& parser, double& pixels) {
+  parser.add_value("--pixel-error T", pixels, "allowed error on the screen in pixels, 0 or more");
+}
+
 void add_allow_outside_option(OptionParser& parser, std::vector<std::string>& folders) {
   parser.add_values("--allow-outside FOLDER", folders,
                     "also read files below FOLDER that the scene refers to; may be repeated (default: only the scene's "

@@ -29,7 +29,8 @@ std::string more_rows(std::size_t rows) {
 
 std::string describe_settings(const app::Settled& settled, const std::vector<app::SettledMesh>& meshes,
                               const scene::Scene& scene) {
-  std::string text = "settings\n";
+  const std::string use = app::describe_use(settled);
+  std::string text = "settings" + (use.empty() ? "" : " " + use) + "\n";
   const auto line = [&](const std::string& of, app::Setting setting, const app::SettledWord& word) {
     text += "  " + of + app::info_of(setting).name + " " + (word.word.empty() ? "(none)" : printable(word.word, 100)) +
             ": " + printable(word.from, 200) + "\n";

@@ -36,7 +36,7 @@ inline constexpr const char* kProgramSummary =
     "convert glTF scenes to streamable level-of-detail DAGs of meshlets, and prove them right";
 inline constexpr const char* kProgramDescription =
     "meshlode converts glTF, PLY, OBJ and STL scenes to .lode assets, which an engine loads page by page and draws at "
-    "the detail that the camera needs, without cracks. Other commands show, draw, export, compare and prove assets.";
+    "the detail that the camera needs, without cracks. Other commands show, draw, export, compare and verify assets.";
 
 /// The verb's page of the reference, in Markdown: docs/reference/cli/.
 [[nodiscard]] std::string reference_page(const VerbHelp& verb);

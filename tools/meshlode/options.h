@@ -83,6 +83,15 @@ void add_max_decoded_option(OptionParser& parser, std::string& size);
 [[nodiscard]] Result<std::uint64_t> parse_max_decoded(const std::string& size);
 constexpr const char* kDefaultMaxDecodedText = "512MiB";
 
+/// `--scene NAME|INDEX|all`, of verbs that import a scene.
+void add_scene_option(OptionParser& parser, std::string& choice);
+
+/// `--device NAME|INDEX`, of verbs that draw with --gpu.
+void add_device_option(OptionParser& parser, std::string& device);
+
+/// `--pixel-error T`: what a camera's cut may be off by.
+void add_pixel_error_option(OptionParser& parser, double& pixels);
+
 /// `--allow-outside DIR`, of verbs that import a scene.
 void add_allow_outside_option(OptionParser& parser, std::vector<std::string>& folders);
 /// As scene::ImportOptions takes them. Errors: kIo for what is no folder.

@@ -38,6 +38,7 @@ extern const Verb kDoctorVerb;
 extern const Verb kInfoVerb;
 extern const Verb kCompareVerb;
 extern const Verb kSweepVerb;
+extern const Verb kStreamVerb;
 extern const Verb kValidateVerb;
 extern const Verb kVerifyVerb;
 extern const Verb kRenderVerb;

@@ -138,7 +138,7 @@ int run_doctor(const Verb& verb, std::span<char* const> args) {
                    "exit with 6 if one of these is found: fault ids, high, medium (and worse) or any, comma-separated "
                    "(default: none)");
   parser.group("Input");
-  parser.add_value("--scene NAME|INDEX|all", options.scene, "which scene of a glTF to examine (default: the file's)");
+  add_scene_option(parser, options.scene);
   parser.add_flag("--linear-colors", options.linear_colors, "read colours as 'build --linear-colors' does");
   add_allow_outside_option(parser, allow_outside);
   parser.group("Resources");

@@ -252,8 +252,7 @@ int run_render(const Verb& verb, std::span<char* const> args) {
   add_bounds_options(parser, options.bounds);
   parser.group("GPU");
   parser.add_flag("--gpu", options.gpu, "select and draw on a Vulkan device");
-  parser.add_value("--device NAME|INDEX", options.device,
-                   "the device, by index or part of its name (default: the first that can)");
+  add_device_option(parser, options.device);
   parser.add_value("--force", options.force, "run a pass that the scene does not need (default: none)",
                    {"double-sided", "alpha-mask", "occlusion", "hardware", "textures", "all"});
   parser.group("Resources");

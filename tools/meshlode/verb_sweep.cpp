@@ -240,8 +240,7 @@ int run_sweep(const Verb& verb, std::span<char* const> args) {
   parser.add_value("--samples", words.samples,
                    "area-uniform samples per direction of a deviation (default: 100000, fewer for a short --budget)");
   parser.group("Input");
-  parser.add_value("--scene NAME|INDEX|all", options.scene_choice,
-                   "which scene of a glTF to build (default: the file's)");
+  add_scene_option(parser, options.scene_choice);
   add_allow_outside_option(parser, words.allow_outside);
   parser.group("Resources");
   add_jobs_option(parser, options.jobs);

@@ -9,9 +9,9 @@ namespace meshlode::cli {
 namespace {
 
 const Verb* const kVerbs[] = {
-    &kBuildVerb,    &kPlanVerb,   &kInfoVerb,    &kRenderVerb,     &kExtractVerb, &kVerifyVerb,
-    &kValidateVerb, &kDoctorVerb, &kCompareVerb, &kSweepVerb,      &kMeasureVerb, &kRepackVerb,
-    &kMergeVerb,    &kReportVerb, &kCacheVerb,   &kCompletionVerb, &kManVerb,
+    &kBuildVerb,    &kPlanVerb,   &kInfoVerb,    &kRenderVerb, &kExtractVerb,    &kVerifyVerb,
+    &kValidateVerb, &kDoctorVerb, &kCompareVerb, &kSweepVerb,  &kStreamVerb,     &kMeasureVerb,
+    &kRepackVerb,   &kMergeVerb,  &kReportVerb,  &kCacheVerb,  &kCompletionVerb, &kManVerb,
 };
 
 }  // namespace

@@ -296,14 +296,13 @@ int run_verify(const Verb& verb, std::span<char* const> args) {
   add_bulk_outputs(parser, bulk);
   parser.group("GPU");
   parser.add_flag("--gpu", gpu_options.is_on, "also decode, select and draw on a Vulkan device, and compare");
-  parser.add_value("--device NAME|INDEX", gpu_options.device,
-                   "the device, by index or part of its name (default: the first that can)");
+  add_device_option(parser, gpu_options.device);
   parser.add_value("--orbits", gpu_options.orbits, "cameras around the scene that are judged against the source");
   parser.add_value("--path FILE", gpu_options.path,
                    "cameras to judge as well, one 'ex ey ez tx ty tz [fovy [near]]' per line (default: none)");
   parser.add_value("--out-dir FOLDER", gpu_options.out_folder,
                    "existing folder for heat maps of the worst cameras and the report gpu.json (default: none)");
-  parser.add_value("--pixel-error T", gpu_options.pixel_error, "allowed error on the screen in pixels");
+  add_pixel_error_option(parser, gpu_options.pixel_error);
   add_promise_option(parser, gpu_options.promise);
   parser.group("Resources");
   add_bulk_resources(parser, bulk);
@@ -350,7 +349,7 @@ int run_verify(const Verb& verb, std::span<char* const> args) {
 
 }  // namespace
 
-const Verb kVerifyVerb{"verify", "prove an asset against the scene it was built from",
+const Verb kVerifyVerb{"verify", "compare an asset with the scene it was built from",
                        "Checks that every source triangle is there, that no cut has a crack, that selection by "
                        "hierarchy and by the flat rule agree, and that cuts deviate from the source by no more than "
                        "the asset states. It shares no code with the builder.\n\n"

@@ -26,6 +26,10 @@ constexpr const char* kInput = "Input";
 constexpr const char* kAdvanced = "Advanced";
 
 constexpr std::array<SettingInfo, kSettingCount> kSettings{{
+    {Setting::kFor, "for", "", kQuality,
+     "options by use: web, the smallest download; engine, pages that are mapped; archive, the most accurate; options "
+     "that are given win",
+     "any", false},
     {Setting::kErrorTier, "error-tier", "", kQuality,
      "what the stored errors are: estimated (qem), sampled (measured) or proven (certified); auto: the preset's",
      "auto", true},
@@ -75,7 +79,29 @@ constexpr std::array<SettingInfo, kSettingCount> kSettings{{
     {Setting::kKeepLayers, "keep-layers", "", kAdvanced,
      "keep surfaces that lie close above one another in order in coarse cuts; off: gaps are not looked for", "on",
      false},
+    {Setting::kPageSize, "page-size", "", "Output",
+     "largest page, in KiB; smaller ones load less that is not drawn, in more requests; a larger group has its own",
+     "128", false},
+    {Setting::kPageOrder, "page-order", "", "Output",
+     "order of groups inside a level: level, as they were built; covisible, those together that views need together",
+     "level", false},
+    {Setting::kRootBytes, "root-bytes", " auto|N", "Output",
+     "limit of each mesh's first page in bytes, 16384 to 131072; auto: as --page-size", "auto", false},
 }};
+
+struct UseWord {
+  const char* use;
+  Setting setting;
+  const char* word;
+};
+// Measured in docs/guides/choosing-settings.md.
+constexpr UseWord kUseWords[] = {
+    {"web", Setting::kStripEffort, "best"},     {"web", Setting::kNormalError, "0.5"},
+    {"web", Setting::kUvError, "0.25px"},       {"engine", Setting::kCodec, "none"},
+    {"archive", Setting::kPreset, "best"},      {"archive", Setting::kErrorTier, "certified"},
+    {"archive", Setting::kNormalError, "0.02"},
+};
+constexpr std::array<const char*, 4> kUses{"any", "web", "engine", "archive"};
 
 /// A finite number above 0, all of the text.
 std::optional<double> parse_positive(std::string_view text) {
@@ -112,6 +138,10 @@ std::optional<std::uint32_t> parse_cluster_triangles(std::string_view text) {
 
 std::optional<std::uint32_t> parse_group_clusters(std::string_view text) {
   return parse_count(text, builder::kFewestGroupClusters, builder::kMostGroupClusters);
+}
+
+std::optional<std::uint32_t> parse_root_bytes(std::string_view text) {
+  return parse_count(text, builder::kFewestRootBytes, format::kMaxPageBytes);
 }
 
 std::string wanted(const char* what, std::string_view word) {
@@ -156,8 +186,14 @@ std::string join(const std::vector<std::string>& names) {
 /// The words of all layers so far.
 class Settling {
  public:
-  Settling() {
+  /// The defaults, and over them what the last `for` of these layers means.
+  explicit Settling(std::span<const SettingLayer> layers = {}) {
     for (const SettingInfo& info : kSettings) words_[index_of(info.setting)] = {info.usual, kDefaultPlace};
+    std::string use;
+    for (const SettingLayer& layer : layers) use = layer.words[index_of(Setting::kFor)].value_or(use);
+    for (const UseWord& word : kUseWords) {
+      if (use == word.use) words_[index_of(word.setting)] = {word.word, "for " + use};
+    }
   }
 
   Status add(const Saying& saying) {
@@ -241,6 +277,9 @@ builder::PipelineOptions options_of(const std::array<SettledWord, kSettingCount>
   options.max_cluster_triangles =
       parse_cluster_triangles(word(Setting::kClusterTriangles)).value_or(options.max_cluster_triangles);
   options.group_clusters = parse_group_clusters(word(Setting::kGroupClusters)).value_or(options.group_clusters);
+  options.page_kib = parse_count(word(Setting::kPageSize), 16, 128).value_or(options.page_kib);
+  options.page_order = value_in(builder::kPageOrderNames, word(Setting::kPageOrder)).value_or(options.page_order);
+  options.root_bytes = parse_root_bytes(word(Setting::kRootBytes)).value_or(options.root_bytes);
   options.repair = word(Setting::kRepair) == "true";
   options.linear_colors = word(Setting::kLinearColors) == "true";
   options.keep_topology = word(Setting::kKeepTopology) == "true";
@@ -266,6 +305,10 @@ std::optional<Setting> setting_of(std::string_view name) {
   return std::nullopt;
 }
 
+bool takes_number(Setting setting) {
+  return choices_of(setting).empty() || setting == Setting::kPageSize;
+}
+
 bool is_list(Setting setting) {
   return setting == Setting::kKeep || setting == Setting::kDrop;
 }
@@ -281,6 +324,7 @@ bool is_flag(Setting setting) {
 
 std::vector<std::string> choices_of(Setting setting) {
   switch (setting) {
+    case Setting::kFor: return {kUses.begin(), kUses.end()};
     case Setting::kErrorTier: {
       std::vector<std::string> names = all_names(format::kErrorTierNames);
       names.insert(names.begin(), "auto");
@@ -296,6 +340,8 @@ std::vector<std::string> choices_of(Setting setting) {
     case Setting::kLockBorders: return {"false", "true"};
     case Setting::kPromise: return all_names(format::kPromiseNames);
     case Setting::kKeepLayers: return {"on", "off"};
+    case Setting::kPageSize: return {"16", "32", "64", "128"};
+    case Setting::kPageOrder: return all_names(builder::kPageOrderNames);
     default: return {};
   }
 }
@@ -325,6 +371,8 @@ std::string find_fault(Setting setting, std::string_view word) {
     case Setting::kGroupClusters:
       return parse_group_clusters(word) ? "" : wanted("a whole number of clusters from 4 to 32", word);
     case Setting::kNormalError: return parse_angle(word) ? "" : wanted("an angle above 0 and up to 180 degrees", word);
+    case Setting::kRootBytes:
+      return word == "auto" || parse_root_bytes(word) ? "" : wanted("auto or 16384 to 131072 bytes", word);
     case Setting::kUvError:
       return word == "auto" || parse_uv_error(word)
                  ? ""
@@ -333,8 +381,19 @@ std::string find_fault(Setting setting, std::string_view word) {
   }
 }
 
+std::string describe_use(const Settled& settled) {
+  const std::string& use = settled[Setting::kFor].word;
+  if (use == info_of(Setting::kFor).usual) return {};
+  std::string text;
+  for (const SettingInfo& info : kSettings) {
+    const SettledWord& word = settled[info.setting];
+    if (word.from == "for " + use) text += (text.empty() ? ": " : ", ") + std::string(info.name) + " " + word.word;
+  }
+  return "for " + use + (text.empty() ? ": every setting is given" : text);
+}
+
 Result<Settled> settle(std::span<const SettingLayer> layers) {
-  Settling settling;
+  Settling settling(layers);
   for (const SettingLayer& layer : layers) {
     TRY(settling.add(saying_of(layer)));
     for (const SettingLayer::MeshRule& rule : layer.mesh_rules) {
@@ -353,7 +412,7 @@ Result<std::vector<SettledMesh>> settle_meshes(std::span<const SettingLayer> lay
   bool is_any = false;
   std::vector<SettledMesh> out;
   for (std::size_t i = 0; has_rules && i < mesh_names.size(); ++i) {
-    Settling settling;
+    Settling settling(layers);
     for (const SettingLayer& layer : layers) {
       TRY(settling.add(saying_of(layer)));
       for (const SettingLayer::MeshRule& rule : layer.mesh_rules) {

@@ -21,6 +21,7 @@ namespace meshlode::app {
 
 /// Everything that changes the bytes of an asset. The order is that of the help.
 enum class Setting : std::uint8_t {
+  kFor,
   kErrorTier,
   kPreset,
   kAttributes,
@@ -41,8 +42,11 @@ enum class Setting : std::uint8_t {
   kAggregate,
   kPromise,
   kKeepLayers,
+  kPageSize,
+  kPageOrder,
+  kRootBytes,
 };
-constexpr std::size_t kSettingCount = 20;
+constexpr std::size_t kSettingCount = 24;
 
 struct SettingInfo {
   Setting setting;
@@ -60,6 +64,8 @@ struct SettingInfo {
 /// Names between commas.
 [[nodiscard]] bool is_list(Setting setting);
 [[nodiscard]] std::optional<Setting> setting_of(std::string_view name);
+/// Whether a file may say it as a number: where there are no choices, and where these are numbers.
+[[nodiscard]] bool takes_number(Setting setting);
 /// The words that a setting may be; none where it is a number.
 [[nodiscard]] std::vector<std::string> choices_of(Setting setting);
 
@@ -100,7 +106,11 @@ struct Settled {
   }
 };
 
-/// All layers together, for the scene as a whole. Errors: a layer's code, with its place, for a word that is none and
+/// What the setting `for` decided, in a line: "for engine: codec none"; empty where it says `any`.
+[[nodiscard]] std::string describe_use(const Settled& settled);
+
+/// All layers together, for the scene as a whole. What the last `for` of the layers means lies below every word that is
+/// given. Errors: a layer's code, with its place, for a word that is none and
 /// for two that exclude each other in one layer (a grid and a position error, a name kept and dropped); across layers
 /// the later one wins. A layer that says `attributes` does away with the names of earlier ones.
 [[nodiscard]] Result<Settled> settle(std::span<const SettingLayer> layers);

@@ -43,7 +43,7 @@ std::string number_text(double number) {
 const char* kind_of(Setting setting) {
   if (is_flag(setting)) return "give true or false";
   if (is_list(setting)) return "give a text or an array of texts";
-  return choices_of(setting).empty() ? "give a number or a text" : "give a text";
+  return takes_number(setting) ? "give a number or a text" : "give a text";
 }
 
 class FileReader {
@@ -154,7 +154,7 @@ std::optional<std::string> word_of_value(Setting setting, const Json& value) {
     return words;
   }
   const auto number = value.number();
-  if (!number || !choices_of(setting).empty()) return std::nullopt;
+  if (!number || !takes_number(setting)) return std::nullopt;
   return number_text(*number);
 }
 

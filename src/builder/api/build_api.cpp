@@ -37,6 +37,7 @@ Status check_choices(const BuildOptions& options) {
     return usage("BuildOptions::error_tier");
   if (options.preset > Preset::kBest) return usage("BuildOptions::preset");
   if (options.strip_effort > StripEffort::kBest) return usage("BuildOptions::strip_effort");
+  if (options.page_order > PageOrder::kCovisible) return usage("BuildOptions::page_order");
   if (options.attributes > AttributeChoice::kAll) return usage("BuildOptions::attributes");
   if (options.uv_error_unit > UvErrorUnit::kTexels) return usage("BuildOptions::uv_error_unit");
   if (options.promise > format::Promise::kAppearance) return usage("BuildOptions::promise");
@@ -66,6 +67,12 @@ Status check_numbers(const BuildOptions& options) {
   if (options.group_clusters < builder::kFewestGroupClusters || options.group_clusters > builder::kMostGroupClusters) {
     return usage("BuildOptions::group_clusters", "is not 4 to 32");
   }
+  if (!builder::is_page_size(options.page_size)) {
+    return usage("BuildOptions::page_size", "is not 16, 32, 64 or 128");
+  }
+  if (!builder::is_root_size(options.root_bytes)) {
+    return usage("BuildOptions::root_bytes", "is not 0, or 16384 to 131072");
+  }
   if (options.thread_count > 4096) return usage("BuildOptions::thread_count", "is above 4096");
   return Ok{};
 }
@@ -91,6 +98,9 @@ Result<builder::PipelineOptions> make_pipeline_options(const BuildOptions& optio
   pipeline.strip_effort = options.strip_effort;
   pipeline.max_cluster_triangles = options.cluster_triangles;
   pipeline.group_clusters = options.group_clusters;
+  pipeline.page_kib = options.page_size;
+  pipeline.page_order = options.page_order;
+  pipeline.root_bytes = options.root_bytes;
   pipeline.repair = options.repair;
   pipeline.linear_colors = options.linear_colors;
   pipeline.keep_topology = options.keep_topology;

@@ -127,6 +127,7 @@ Result<BuildOptions> read_options(const meshlode_build_options& in) {
   if (in.error_tier > 2 && in.error_tier != MESHLODE_TIER_OF_PRESET) return limit("error_tier");
   if (in.preset > 2) return limit("preset");
   if (in.strip_effort > 3) return limit("strip_effort");
+  if (in.page_order > 1) return limit("page_order");
   if (in.attributes > 2) return limit("attributes");
   if (in.aggregate > 4) return limit("aggregate");
   if (in.promise > 2) return limit("promise");
@@ -140,6 +141,9 @@ Result<BuildOptions> read_options(const meshlode_build_options& in) {
   out.codec = static_cast<format::Codec>(in.codec);  // as wide as C's, and checked there
   out.cluster_triangles = in.cluster_triangles;
   out.group_clusters = in.group_clusters;
+  out.page_size = in.page_size;
+  out.page_order = static_cast<PageOrder>(in.page_order);
+  out.root_bytes = in.root_bytes;
   out.grid_step = in.grid_step;
   out.position_error = in.position_error;
   out.normal_error = in.normal_error;
@@ -237,6 +241,9 @@ void meshlode_build_defaults(meshlode_build_options* options) {
   options->codec = static_cast<uint32_t>(defaults.codec);
   options->cluster_triangles = defaults.cluster_triangles;
   options->group_clusters = defaults.group_clusters;
+  options->page_size = defaults.page_size;
+  options->page_order = static_cast<uint32_t>(defaults.page_order);
+  options->root_bytes = defaults.root_bytes;
   options->grid_step = defaults.grid_step;
   options->position_error = defaults.position_error;
   options->normal_error = defaults.normal_error;

@@ -360,8 +360,7 @@ struct Entry {
   [[nodiscard]] std::uint32_t index() const { return 4 * (where >> 4U) + (key & 3U); }
   [[nodiscard]] std::uint32_t level() const { return (where & 15U) + 1; }
 };
-constexpr std::size_t kMaxLevels = 16;
-using Stack = std::array<Entry, 3 * kMaxLevels + 8>;
+using Stack = std::array<Entry, 3 * SurfaceTree::kMaxDepth + 8>;
 
 struct PointLanes {
   Lanes x, y, z;

@@ -87,6 +87,8 @@ class SurfaceTree {
   /// them. The distance to a triangle is convex, so that whatever lies between the points is no farther.
   [[nodiscard]] Hit look_around(const std::array<Vec3f, 3>& points, TreeSlot slot) const;
 
+  static constexpr std::size_t kMaxDepth = 16;  ///< 4^16 leaves
+
  private:
   struct Node {
     std::array<std::array<float, 4>, 3> low, high;  ///< [axis][child]
@@ -128,7 +130,6 @@ class SurfaceTree {
   std::vector<FourCapsules> capsules_;      ///< by node, where some vertex has very many triangles
   std::vector<std::uint32_t> level_start_;  ///< of nodes_, from the root; node i of a level has children 4i … 4i+3
 
-  static constexpr std::size_t kMaxDepth = 16;  ///< 4^16 leaves
   /// In the frame: how far rounding may move a corner, a ray's end and a box's side, generously.
   static constexpr float kRayGrace = 2e-6F;
 };

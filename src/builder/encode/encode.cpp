@@ -233,9 +233,9 @@ GroupWords encode_group(const LodDag& dag, const DagGroup& group, const ChannelP
   return out;
 }
 
-/// Groups in order, as many as fit each page.
+/// Groups in order, as many as fit each page; one that fits none alone.
 Result<std::vector<EncodedMesh::Page>> deal_pages(const PreparedMesh& mesh, const LodDag& dag,
-                                                  const std::vector<GroupWords>& groups) {
+                                                  const EncodeOptions& options, const std::vector<GroupWords>& groups) {
   std::vector<EncodedMesh::Page> pages;
   std::size_t page_bytes = 0;
   for (std::size_t g = 0; g < groups.size(); ++g) {
@@ -246,7 +246,8 @@ Result<std::vector<EncodedMesh::Page>> deal_pages(const PreparedMesh& mesh, cons
                        std::to_string(group_bytes) + " bytes and a page holds " +
                        std::to_string(format::kMaxPageBytes)};
     }
-    if (pages.empty() || page_bytes + group_bytes > format::kMaxPageBytes) {
+    const std::size_t limit = pages.size() == 1 ? options.first_page_bytes : options.page_bytes;
+    if (pages.empty() || page_bytes + group_bytes > limit) {
       EncodedMesh::Page page;
       page.first_group = static_cast<std::uint32_t>(g);
       page.first_cluster = dag.groups[g].first_cluster;
@@ -346,7 +347,7 @@ Result<EncodedMesh> encode_mesh(const PreparedMesh& mesh, const LodDag& dag, con
 
   EncodedMesh out;
   out.record = mesh_record(mesh, dag, plan);
-  TRY_LET(pages, deal_pages(mesh, dag, group_words));
+  TRY_LET(pages, deal_pages(mesh, dag, options, group_words));
   out.pages = std::move(*pages);
   parallel_for_each_index(out.pages.size(), 1, [&](std::size_t p) {
     const EncodedMesh::Page& page = out.pages[p];

@@ -28,6 +28,8 @@ struct EncodeOptions {
   std::uint32_t strip_trials = 8;  ///< see StripOptions
   /// Of a cluster of several materials: strips are short where these meet, and more is to be had by trying.
   std::uint32_t mixed_strip_trials = 128;
+  std::uint32_t page_bytes = format::kMaxPageBytes;        ///< a page is full there; a larger group has one of its own
+  std::uint32_t first_page_bytes = format::kMaxPageBytes;  ///< the same of the mesh's first page
 };
 
 /// The M of the normals that keeps EncodeOptions::normal_error, at most format::kMaxNormalScale.

@@ -8,6 +8,7 @@
 #include <meshlode/format.h>
 
 #include "builder/deviation/attribute_deviation.h"
+#include "builder/measure/cluster_surface.h"
 
 namespace meshlode::builder {
 
@@ -21,23 +22,19 @@ void measure_group_attributes(const SourceTree& source, const PreparedMesh& mesh
     group.normal_deviation = std::max(group.normal_deviation, dag.groups[own.value].normal_deviation);
     group.uv_deviation = std::max(group.uv_deviation, dag.groups[own.value].uv_deviation);
   }
-  std::vector<Vec3d> positions;
-  std::vector<std::array<std::uint32_t, 3>> triangles, vertices;  // of positions, of the DAG
+  ClusterSurface surface;
+  std::vector<std::array<std::uint32_t, 3>> vertices;  // of the DAG
   for (const std::uint32_t c : made) {
     const DagCluster& cluster = dag.clusters[c];
-    const auto base = static_cast<std::uint32_t>(positions.size());
-    for (std::uint32_t v = cluster.first_vertex; v < cluster.first_vertex + cluster.vertex_count; ++v) {
-      positions.push_back(mesh.grid.decode(dag.vertex_position[v]));
-    }
+    surface.add(dag, mesh.grid, cluster);
     for (std::uint32_t t = cluster.first_triangle; t < cluster.first_triangle + cluster.triangle_count; ++t) {
       const auto& l = dag.triangles[t];
-      triangles.push_back({base + l[0], base + l[1], base + l[2]});
       vertices.push_back({cluster.first_vertex + l[0], cluster.first_vertex + l[1], cluster.first_vertex + l[2]});
     }
   }
   const AttributeDeviation found =
-      measure_attributes(source, {dag.vertex_attributes, form.vertices_of_source}, {positions, triangles},
-                         {dag.vertex_attributes, vertices}, mesh.layout, near);
+      measure_attributes(source, {dag.vertex_attributes, form.vertices_of_source},
+                         {surface.positions, surface.triangles}, {dag.vertex_attributes, vertices}, mesh.layout, near);
   group.normal_deviation = std::max(group.normal_deviation, found.normal);
   // Of texture coordinates as large as floats it may be beyond them, where the format says that nothing was measured.
   constexpr double kMost = 0.999 * double{format::kInfiniteError};

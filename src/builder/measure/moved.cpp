@@ -8,6 +8,7 @@
 #include "base/parallel.h"
 #include "base/release.h"
 #include "builder/deviation/bounded_search.h"
+#include "builder/measure/cluster_surface.h"
 #include "builder/measure/level_meter.h"
 
 namespace meshlode::builder {
@@ -73,19 +74,11 @@ void LevelMeter::measure_from_own(const LevelSurface& surface, std::span<Moved> 
 /// To one other group, those that are too far from what their own made: how far they are from that and what the other
 /// replaced together. No tree of both is made where each is near to the one or the other.
 void LevelMeter::measure_from_both(const LevelSurface& surface, std::span<Moved> moved) const {
-  std::vector<Vec3d> positions;
-  std::vector<LinkedSurface::Triangle> triangles;
+  ClusterSurface surface_of_both;
+  auto& [positions, triangles] = surface_of_both;
   const DagGroup& to = dag_.groups[moved.front().to];
   for (std::uint32_t c = to.first_cluster; c < to.first_cluster + to.cluster_count; ++c) {
-    const DagCluster& cluster = dag_.clusters[c];
-    const auto base = static_cast<std::uint32_t>(positions.size());
-    for (std::uint32_t v = cluster.first_vertex; v < cluster.first_vertex + cluster.vertex_count; ++v) {
-      positions.push_back(mesh_.grid.decode(dag_.vertex_position[v]));
-    }
-    for (std::uint32_t t = cluster.first_triangle; t < cluster.first_triangle + cluster.triangle_count; ++t) {
-      const auto& local = dag_.triangles[t];
-      triangles.push_back({base + local[0], base + local[1], base + local[2]});
-    }
+    surface_of_both.add(dag_, mesh_.grid, dag_.clusters[c]);
   }
   const std::size_t position_count = positions.size(), triangle_count = triangles.size();
   SurfaceTree tree;

@@ -7,10 +7,15 @@ namespace meshlode::builder {
 
 namespace {
 
-/// A triangle is looked at closely where a few of its points are so far, as a share of what is known. With 0.6 a
-/// thousand loose pieces have a cut at 1.075 of its error, with 0.4 at 1.013, with 0.3 none above 1; looking at all of
-/// them costs the dragon 2.7 times the time.
-constexpr double kPromise = 0.4;
+/// A triangle is looked at closely where one of four points of it is so far, as a share of what is known. Looking at
+/// all of them costs the dragon 2.7 times the time.
+constexpr double kPromise = 0.6;
+/// The same where the source near to these points is not parallel to it, within the cosine below: between two sheets or
+/// two loose pieces a peak is far from all four. Without, 640 sheets above one another have a cut at 1.077 of its error
+/// and a thousand loose pieces one at 1.075; with it 1.050 and 1.000, and the dragon takes a tenth less time than with
+/// 0.4 everywhere.
+constexpr double kPromiseBetween = 0.2;
+constexpr float kBetween = 0.7F;
 /// One that lies over more source triangles is left to a search in bounds, which costs more: with 64, staircases of
 /// 17,000 triangles had cuts at 1.06 and 1.10 times what they stored.
 constexpr std::size_t kMostPiecesOfMade = 1024;
@@ -80,13 +85,16 @@ void LevelMeter::check_made(const LevelSurface& surface, Made& made) const {
     const auto [a, b, c] = surface.corners(k);
     if (!is_small) {
       double most = 0.0;
+      bool is_between = false;
       TreeSlot place = made.near[i];
       for (const Vec3d& x : {(a + b + c) / 3.0, 0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a)}) {
-        place = find_near(source, x, place, kPromise * within).slot;
+        place = find_near(source, x, place, kPromiseBetween * within).slot;
         most = std::max(most, distance_at(source, x, place));
+        const Vec3f normal = unit_normal(impl.corners(source.triangle_at(place)));
+        is_between = is_between || glm::dot(normal, surface.normal[k]) < kBetween;
       }
       raise(most);
-      if (most <= kPromise * within) continue;
+      if (most <= (is_between ? kPromiseBetween : kPromise) * within) continue;
     }
     if (overlay.is_within({a, b, c}, source.triangle_at(made.near[i]), within)) continue;
     for (const Overlay::Far& far : overlay.far()) raise(far.distance);

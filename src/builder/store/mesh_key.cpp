@@ -73,12 +73,15 @@ void add_layout(KeyHasher& key, const AttributeLayout& layout) {
 }
 
 void add_encoding(KeyHasher& key, const EncodeOptions& encode) {
-  const auto& [normal_error, uv_error, uv_error_may_fall_short, strip_trials, mixed_strip_trials] = encode;
+  const auto& [normal_error, uv_error, uv_error_may_fall_short, strip_trials, mixed_strip_trials, page_bytes,
+               first_page_bytes] = encode;
   key.value(normal_error);
   key.values(uv_error);
   key.value(uv_error_may_fall_short);
   key.value(strip_trials);
   key.value(mixed_strip_trials);
+  key.value(page_bytes);
+  key.value(first_page_bytes);
 }
 
 void add_own_options(KeyHasher& key, const MeshOptions& own) {
@@ -101,18 +104,21 @@ void add_own_options(KeyHasher& key, const MeshOptions& own) {
 
 void add_scene_options(KeyHasher& key, const SceneOptions& options) {
   const auto& [preset, codec, strip_effort, partition_seed, repair, linear_colors, promise, keep_topology, keep_layers,
-               max_cluster_triangles, max_cluster_vertices, group_clusters, max_memory, mesh_store, looks, hooks,
-               mesh_options] = options;
+               max_cluster_triangles, max_cluster_vertices, group_clusters, page_kib, page_order, root_bytes,
+               max_memory, mesh_store, looks, hooks, mesh_options] = options;
   key.value(preset);
   key.value(partition_seed);
   key.value(max_cluster_triangles);
   key.value(max_cluster_vertices);
   key.value(group_clusters);
+  key.value(page_order);
   key.value(keep_topology);
   key.value(promise);
   const std::string study = hooks != nullptr ? hooks->record : std::string();
   key.list(std::vector<char>(study.begin(), study.end()));
   static_cast<void>(strip_effort);   // EncodeOptions has what it came to
+  static_cast<void>(page_kib);       // the same
+  static_cast<void>(root_bytes);     // the same
   static_cast<void>(keep_layers);    // the gaps say what came of it
   static_cast<void>(codec);          // of the pages on disk, later
   static_cast<void>(repair);         // the triangles are as they are

@@ -80,6 +80,7 @@ PlotPoint plot_point(const Point& point, const Metric& x, const Metric& y, const
   out.x_spread = {fx.low, fx.high};
   out.y_spread = {fy.low, fy.high};
   out.id = point.id;
+  out.label = point.label;
   out.title = point.label + ": " + x.title + " " + amount_text(fx.value, x.unit) + ", " + y.title + " " +
               amount_text(fy.value, y.unit);
   return out;

@@ -10,5 +10,5 @@ endforeach()
 set(embedded "${CMAKE_CURRENT_BINARY_DIR}/page/embedded.cpp")
 configure_file("${CMAKE_CURRENT_LIST_DIR}/embedded.cpp.in" "${embedded}" @ONLY)
 set(meshlode_page_sources
-    page/axis.cpp page/charts.cpp page/markup.cpp page/numbers.cpp page/page.cpp page/palette.cpp page/pictures.cpp
+    page/axis.cpp page/charts.cpp page/markup.cpp page/numbers.cpp page/page.cpp page/parts.cpp page/summary.cpp page/palette.cpp page/pictures.cpp
     page/plot.cpp page/read_pictures.cpp page/table.cpp page/tables.cpp page/treemap.cpp "${embedded}")

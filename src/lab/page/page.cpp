@@ -13,7 +13,9 @@
 #include "lab/page/markup.h"
 #include "lab/page/numbers.h"
 #include "lab/page/palette.h"
+#include "lab/page/parts.h"
 #include "lab/page/pictures.h"
+#include "lab/page/summary.h"
 #include "lab/page/tables.h"
 
 namespace meshlode::lab::page {
@@ -25,40 +27,6 @@ struct Section {
   const char* title;
   Markup body;
 };
-
-void write_paragraph(Markup& html, std::string_view text) {
-  html.element("p", text).line();
-}
-
-/// A command to be copied, with what it is for.
-void write_command(Markup& html, std::string_view what, const std::string& command) {
-  if (command.empty()) return;
-  html.open("p", {{"class", "command"}}).text(what).text(": ").element("code", command).close().line();
-}
-
-void write_numbers(Markup& html, const Table& table) {
-  html.open("details").element("summary", "The numbers: " + table.caption);
-  write_table(html, table);
-  html.close().line();
-}
-
-void write_chart(Markup& html, const Chart& chart, const std::string& command) {
-  html.open("figure", {{"class", "chart"}});
-  html.element("h3", chart.plot.title).line();
-  html.raw(draw_plot(chart.plot, Standing::kInPage));
-  html.open("figcaption");
-  write_paragraph(html, chart.reading);
-  write_command(html, "Made by", command);
-  html.close();
-  write_numbers(html, chart.table);
-  html.close().line();
-}
-
-std::string joined(const std::vector<std::string>& texts) {
-  std::string out;
-  for (const std::string& text : texts) out += (out.empty() ? "" : ", ") + text;
-  return out;
-}
 
 std::string labels_of(const ReportData& data, const std::vector<std::string>& ids, const Point* but) {
   std::vector<std::string> labels;
@@ -128,7 +96,7 @@ void write_fault(Markup& html, const app::Diagnosis& fault) {
   html.close().line();
   write_paragraph(html, "What to do: " + fault.remedy + ".");
   if (!fault.hard_case.empty()) {
-    html.open("p").text("What a build makes of it from easy to absurd: the hard case ");
+    html.open("p").text("What a build does with it, from easy to extreme: the hard case ");
     html.element("code", fault.hard_case).text(" of docs/reference/hard-cases.md.").close().line();
   }
   html.close().line();
@@ -150,14 +118,15 @@ Section write_doctor(const ReportData& data) {
     for (const app::Diagnosis& fault : data.scene_faults->ranked) write_fault(html, fault);
     html.close().line();
   }
-  write_command(html, "Told by", data.scene_faults->command);
+  write_command(html, "Reported by", data.scene_faults->command);
   return section;
 }
 
 Section write_charts(const ReportData& data) {
   Section section{"accuracy", "What accuracy costs", {}};
   section.body.open("div", {{"class", "charts"}}).line();
-  for (const Chart& chart : chart_frontiers(data)) write_chart(section.body, chart, data.command);
+  const std::vector<Chart> charts = chart_frontiers(data);
+  for (std::size_t i = 1; i < charts.size(); ++i) write_chart(section.body, charts[i], data.command);  // 0: the summary
   const Chart triangles = chart_triangles(data);
   if (!triangles.plot.series.empty()) write_chart(section.body, triangles, data.command);
   section.body.close().line();
@@ -210,7 +179,7 @@ Section write_views(const ReportData& data, const PageOptions& options) {
     return section;
   }
   Markup& html = section.body;
-  html.open("p").text("Heat maps show FLIP a pixel: ");
+  html.open("p").text("Heat maps show FLIP per pixel: ");
   html.open("span", {{"class", "magma"}, {"role", "img"}, {"aria-label", "black is 0, no difference; yellow is 1"}});
   html.close().text(" from 0 (black) to 1 (light yellow).").close().line();
   if (count.left_out > 0) {
@@ -275,8 +244,8 @@ void write_head(Markup& html, const ReportData& data) {
   html.close().line();
 }
 
-void write_top(Markup& html, const ReportData& data, const std::vector<Section>& sections) {
-  html.element("a", "Skip to the answers", {{"class", "skip"}, {"href", "#answers"}}).line();
+void write_top(Markup& html, const ReportData& data) {
+  html.element("a", "Skip to the summary", {{"class", "skip"}, {"href", "#summary"}}).line();
   html.open("header").line();
   html.open("h1").text("What accuracy costs: ").name(data.scene_file).close().line();
   html.open("p", {{"class", "lead"}});
@@ -291,11 +260,15 @@ void write_top(Markup& html, const ReportData& data, const std::vector<Section>&
     html.empty("input", {{"type", "radio"}, {"name", "theme"}, {"value", theme}}).text(" ").text(theme).close();
   }
   html.close().line();
+  html.close().line();
+}
+
+void write_nav(Markup& html, const std::vector<Section>& sections) {
   html.open("nav", {{"aria-label", "Sections"}}).open("ul");
   for (const Section& section : sections) {
     html.open("li").element("a", section.title, {{"href", "#" + std::string(section.id)}}).close();
   }
-  html.close().close().line().close().line();
+  html.close().close().line();
 }
 
 std::vector<Chart> all_charts(const ReportData& data) {
@@ -315,6 +288,8 @@ std::span<const std::uint8_t> as_bytes(const std::string& text) {
 
 std::string write_page(const ReportData& data, const PageOptions& options) {
   std::vector<Section> sections;
+  sections.push_back({"summary", "At a glance", {}});
+  write_summary(sections.back().body, data);
   sections.push_back(write_answers(data));
   sections.push_back(write_doctor(data));
   sections.push_back(write_charts(data));
@@ -328,12 +303,19 @@ std::string write_page(const ReportData& data, const PageOptions& options) {
   html.raw("<!DOCTYPE html>\n").open("html", {{"lang", "en"}}).line();
   write_head(html, data);
   html.open("body").line();
-  write_top(html, data, sections);
+  write_top(html, data);
   html.open("main").line();
   for (const Section& section : sections) {
     const std::string heading = std::string(section.id) + "-heading";
     html.open("section", {{"id", section.id}, {"aria-labelledby", heading}}).line();
-    html.element("h2", section.title, {{"id", heading}}).line().raw(section.body.str()).close().line();
+    const bool is_first = &section == sections.data();
+    if (!is_first) html.open("details", {{"class", "fold"}}).open("summary");
+    html.element("h2", section.title, {{"id", heading}});
+    if (!is_first) html.close();
+    html.line().raw(section.body.str());
+    if (!is_first) html.close();
+    html.close().line();
+    if (is_first) write_nav(html, sections);
   }
   html.close().line();
   html.open("p", {{"id", "said"}, {"class", "unseen"}, {"role", "status"}}).close().line();

@@ -182,6 +182,65 @@ void draw_series(Markup& svg, const Frame& frame, const Series& series) {
   svg.close().line();
 }
 
+struct Extent {
+  double left = 0.0, top = 0.0, right = 0.0, bottom = 0.0;
+
+  [[nodiscard]] bool meets(const Extent& other) const {
+    return left < other.right && other.left < right && top < other.bottom && other.top < bottom;
+  }
+};
+
+/// Of a marker with its spread.
+Extent marks_of(const Frame& frame, const PlotPoint& point) {
+  const Place place = frame.at(point);
+  Extent box{place.x - kMarker, place.y - kMarker, place.x + kMarker, place.y + kMarker};
+  if (point.x_spread.high > point.x_spread.low) {
+    box.left = std::min(box.left, frame.across(point.x_spread.low));
+    box.right = std::max(box.right, frame.across(point.x_spread.high));
+  }
+  if (point.y_spread.high > point.y_spread.low) {
+    box.top = std::min(box.top, frame.down(point.y_spread.high));
+    box.bottom = std::max(box.bottom, frame.down(point.y_spread.low));
+  }
+  return box;
+}
+
+/// Right of its marker, left of it, above, below, or right and left a little higher: the first place where a label
+/// meets neither marks nor labels nor the border. One without such a place is left out; its marker has a title.
+void draw_labels(Markup& svg, const Frame& frame, const std::vector<Series>& series) {
+  constexpr double kAscent = 10.0, kDescent = 3.0, kGap = 4.0, kLongest = 160.0;
+  std::vector<const PlotPoint*> points;
+  std::vector<Extent> taken;
+  for (const Series& one : series) {
+    for (const PlotPoint& point : one.points) {
+      if (!is_shown(point) || point.label.empty()) continue;
+      points.push_back(&point);
+      taken.push_back(marks_of(frame, point));
+    }
+  }
+  for (const PlotPoint* point : points) {
+    const Place place = frame.at(*point);
+    const Extent marks = marks_of(frame, *point);
+    const double width = text_width(point->label), middle = place.x - width / 2.0, beside = place.y + 4.0;
+    if (width > kLongest) continue;
+    const Place tried[] = {{marks.right + kGap, beside},          {marks.left - kGap - width, beside},
+                           {middle, marks.top - kGap - kDescent}, {middle, marks.bottom + kGap + kAscent},
+                           {marks.right + kGap, place.y - kGap},  {marks.left - kGap - width, place.y - kGap}};
+    for (const Place& base : tried) {
+      const Extent box{base.x, base.y - kAscent, base.x + width, base.y + kDescent};
+      const bool is_inside =
+          box.left >= kLeft && box.right <= kWidth && box.top >= 0.0 && box.bottom <= kTop + kPlotHeight;
+      const bool is_free =
+          std::none_of(taken.begin(), taken.end(), [&](const Extent& other) { return box.meets(other); });
+      if (!is_inside || !is_free) continue;
+      taken.push_back(box);
+      draw_text(svg, "tick", base.x, base.y, point->label);
+      break;
+    }
+  }
+  svg.line();
+}
+
 void draw_legend(Markup& svg, const Plot& plot, const std::vector<LegendEntry>& entries) {
   for (const LegendEntry& entry : entries) {
     const Series& series = plot.series[entry.series];
@@ -298,6 +357,7 @@ std::string draw_plot(const Plot& plot, Standing standing) {
     svg.line();
   }
   for (std::size_t i = plot.series.size(); i-- > 0;) draw_series(svg, frame, plot.series[i]);
+  draw_labels(svg, frame, plot.series);
   draw_legend(svg, plot, legend);
   svg.close().line();
   return svg.str();

@@ -20,7 +20,8 @@ struct PlotPoint {
   double x = 0.0, y = 0.0;
   Spread x_spread, y_spread;  ///< drawn where high is above low
   std::string title;          ///< shown while it is pointed at
-  std::string id;             ///< of the point of the sweep, so that all marks of one can be found; may be empty
+  std::string id = {};        ///< of the point of the sweep, so that all marks of one can be found; may be empty
+  std::string label = {};     ///< beside it, where there is room
 };
 
 enum class Drawn { kMarkers, kLine, kLineAndMarkers, kSteps };

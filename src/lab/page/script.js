@@ -107,6 +107,39 @@
     show(0);
   });
 
+  // A card shows its point's first picture, which the page has once, among those of all points.
+  all('.card').forEach(function (card) {
+    const picture = all('.stage .cut').find(function (cut) { return cut.dataset.point === card.dataset.point; });
+    if (picture === undefined) return;
+    const over = picture.querySelector('.over');
+    card.append(make('img', { src: over.src, alt: over.alt }));
+  });
+
+  // Commands can be copied; where a browser keeps the clipboard from pages, the command is selected.
+  all('.command code').forEach(function (code) {
+    const button = make('button', { type: 'button', className: 'copy', textContent: 'Copy' });
+    button.setAttribute('aria-label', 'Copy the command');
+    button.addEventListener('click', function () {
+      const done = function () { say('The command is copied.'); button.textContent = 'Copied'; };
+      const choose = function () {
+        getSelection().selectAllChildren(code);
+        say('The command is selected.');
+      };
+      if (navigator.clipboard === undefined) choose();
+      else navigator.clipboard.writeText(code.textContent).then(done, choose);
+    });
+    code.after(button);
+  });
+
+  // A link to a section unfolds it.
+  const unfold = function () {
+    const section = location.hash.length === 0 ? null : document.getElementById(location.hash.slice(1));
+    if (section !== null) all('.fold', section).forEach(function (fold) { fold.open = true; });
+  };
+  window.addEventListener('hashchange', unfold);
+  all('nav a').forEach(function (link) { link.addEventListener('click', function () { setTimeout(unfold, 0); }); });
+  unfold();
+
   // Printed, the numbers are all there.
   let closed = [];
   window.addEventListener('beforeprint', function () {

@@ -283,25 +283,10 @@ SampleFile make_layered_file(const std::string& kind, std::uint64_t seed, std::u
   scene.name = kind;
   const Vec4f colors[] = {{0.45F, 0.25F, 0.12F, 1.0F}, {0.9F, 0.75F, 0.2F, 1.0F}, {0.2F, 0.35F, 0.8F, 1.0F}};
   for (std::size_t k = 0; k < layers.size(); ++k) {
-    const std::string name = kind + " " + std::to_string(k);
     GlbMaterial material;
-    material.name = name;
     material.base_color = colors[k];
     material.double_sided = k > 0 && found->is_upper_double_sided;
-    scene.materials.push_back(material);
-    Primitive shape = with_smooth_normals(std::move(layers[k]));
-    shape.material = MaterialId(k);
-    GlbMesh mesh;
-    mesh.name = name;
-    mesh.primitives.push_back(std::move(shape));
-    scene.meshes.push_back(std::move(mesh));
-    GlbNode node;
-    node.name = name;
-    node.mesh = static_cast<std::uint32_t>(k);
-    // Not all in the frame of the world: the way from one mesh to the other is part of what is tried.
-    if (k == 1) node.translation = {0.0, 0.0, 0.0};
-    scene.nodes.push_back(std::move(node));
-    scene.roots.push_back(static_cast<std::uint32_t>(k));
+    add_object(scene, kind + " " + std::to_string(k), with_smooth_normals(std::move(layers[k])), material);
   }
   return {"layers-" + kind + "-" + std::to_string(seed) + ".glb", write_glb(scene)};
 }

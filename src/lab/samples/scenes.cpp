@@ -19,18 +19,7 @@ namespace {
 GlbScene scene_of(const char* name, Primitive shape, GlbMaterial material) {
   GlbScene scene;
   scene.name = name;
-  material.name = name;
-  shape.material = MaterialId(0u);
-  scene.materials.push_back(std::move(material));
-  GlbMesh mesh;
-  mesh.name = name;
-  mesh.primitives.push_back(std::move(shape));
-  scene.meshes.push_back(std::move(mesh));
-  GlbNode node;
-  node.name = name;
-  node.mesh = 0u;
-  scene.nodes.push_back(std::move(node));
-  scene.roots.push_back(0);
+  add_object(scene, name, std::move(shape), std::move(material));
   return scene;
 }
 

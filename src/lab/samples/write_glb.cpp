@@ -451,6 +451,21 @@ std::vector<std::uint8_t> join_chunks(std::string json, BinaryChunk& chunk) {
 
 }  // namespace
 
+void add_object(GlbScene& scene, const std::string& name, Primitive shape, GlbMaterial material) {
+  material.name = name;
+  shape.material = MaterialId(scene.materials.size());
+  scene.materials.push_back(std::move(material));
+  GlbMesh mesh;
+  mesh.name = name;
+  mesh.primitives.push_back(std::move(shape));
+  GlbNode node;
+  node.name = name;
+  node.mesh = static_cast<std::uint32_t>(scene.meshes.size());
+  scene.meshes.push_back(std::move(mesh));
+  scene.roots.push_back(static_cast<std::uint32_t>(scene.nodes.size()));
+  scene.nodes.push_back(std::move(node));
+}
+
 std::vector<std::uint8_t> write_glb(const GlbScene& scene) {
   BinaryChunk chunk;
   std::vector<std::vector<PrimitiveAccessors>> meshes;

@@ -71,6 +71,9 @@ struct GlbScene {
   std::optional<GlbAnimation> animation;
 };
 
+/// Adds a mesh of one primitive with its material and its node, all of one name, as a root.
+void add_object(GlbScene& scene, const std::string& name, scene::Primitive shape, GlbMaterial material);
+
 [[nodiscard]] std::vector<std::uint8_t> write_glb(const GlbScene& scene);
 
 }  // namespace meshlode::lab

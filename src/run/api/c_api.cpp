@@ -4,84 +4,19 @@
 #include <meshlode/meshlode.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
-#include <limits>
-#include <new>
-#include <optional>
-#include <string>
-#include <utility>
 #include <vector>
 
-#include "run/api/camera_of_view.h"
+#include "run/api/c_shared.h"
 #include "run/decode/decode.h"
-#include "run/read/asset.h"
 #include "run/select/select.h"
+#include "run/select/streaming_order.h"
 #include "run/unpack/unpack.h"
-
-struct meshlode_asset {
-  meshlode::run::Asset asset;
-};
 
 namespace meshlode {
 namespace {
 
-meshlode_status fail(meshlode_error* error, meshlode_status status, const char* text) {
-  if (error == nullptr) return status;
-  error->status = status;
-  std::size_t size = std::min(std::strlen(text), sizeof error->text - 1);
-  // Not in the middle of a character of UTF-8.
-  const auto is_continuation = [&](std::size_t i) { return (static_cast<unsigned char>(text[i]) & 0xC0U) == 0x80U; };
-  while (size > 0 && text[size] != '\0' && is_continuation(size)) --size;
-  std::memcpy(error->text, text, size);
-  error->text[size] = '\0';
-  return status;
-}
-
-meshlode_status fail(meshlode_error* out, const Error& error) {
-  meshlode_status status = MESHLODE_INVALID;
-  switch (error.code) {
-    case ErrorCode::kUsage: status = MESHLODE_USAGE; break;
-    case ErrorCode::kIo: status = MESHLODE_IO; break;
-    case ErrorCode::kUnsupported: status = MESHLODE_UNSUPPORTED; break;
-    case ErrorCode::kInvalid:
-    case ErrorCode::kBuildFailed:
-    case ErrorCode::kCheckFailed: break;
-  }
-  return fail(out, status, error.message().c_str());
-}
-
-meshlode_status succeed(meshlode_error* error) {
-  if (error != nullptr) {
-    error->status = MESHLODE_OK;
-    error->text[0] = '\0';
-  }
-  return MESHLODE_OK;
-}
-
-/// Calls `body`, which returns a status; memory that cannot be had is a status too.
-template <class Body>
-meshlode_status guard(meshlode_error* error, const Body& body) {
-#ifdef __cpp_exceptions
-  try {
-    return body();
-  } catch (const std::bad_alloc&) {
-    return fail(error, MESHLODE_OUT_OF_MEMORY, "out of memory");
-  } catch (...) {
-    return fail(error, MESHLODE_INVALID, "unexpected failure");
-  }
-#else
-  // Nothing throws, and memory that cannot be had ends the program or module (tools/wasm/module.cpp).
-  static_cast<void>(error);
-  return body();
-#endif
-}
-
-meshlode_status take(Result<run::Asset> asset, meshlode_asset** out, meshlode_error* error) {
-  if (!asset) return fail(error, asset.error());
-  *out = new meshlode_asset{std::move(*asset)};
-  return succeed(error);
-}
+using namespace run::c;
 
 /// The C struct has the record's layout (c_records.cpp).
 template <class Out, class In>
@@ -93,10 +28,6 @@ const Out* view(std::span<const In> records, std::uint32_t* count) {
 
 std::uint32_t page_of(const run::Asset& asset, std::uint32_t cluster) {
   return asset.groups()[asset.clusters()[cluster].coarser_group].page;
-}
-
-bool is_aligned(const void* memory) {
-  return reinterpret_cast<std::uintptr_t>(memory) % 4 == 0;
 }
 
 /// What both ways to decode check, and the integers.
@@ -127,37 +58,11 @@ void copy_vectors(const std::vector<Vector>& from, float* to) {
   }
 }
 
-/// Largest error of a page's groups: what is drawn without the page is off by at least the smallest, at most this.
-float largest_error(const run::Asset& asset, const format::PageRecord& page) {
-  float error = 0.0F;
-  for (const format::GroupRecord& group : asset.groups().subspan(page.first_group, page.group_count)) {
-    error = std::max(error, group.error);
-  }
-  return error;
-}
-
-std::vector<std::uint32_t> order_pages(const run::Asset& asset) {
-  const std::size_t count = asset.pages().size();
-  // A page counts with the largest error of all that depends on it, or it would hold up a page that matters more.
-  std::vector<float> errors(count);
-  for (std::size_t p = count; p-- > 0;) {  // what depends on a page comes after it
-    const format::PageRecord& page = asset.pages()[p];
-    errors[p] = std::max(errors[p], largest_error(asset, page));
-    for (const std::uint32_t needed : asset.page_dependencies().subspan(page.first_dependency, page.dependency_count)) {
-      errors[needed] = std::max(errors[needed], errors[p]);
-    }
-  }
-  // So errors never grow from a page to what depends on it, and with the ids for equal ones the order is right.
-  std::vector<std::uint32_t> order(count);
-  for (std::size_t p = 0; p < count; ++p) order[p] = static_cast<std::uint32_t>(p);
-  std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return errors[a] > errors[b]; });
-  return order;
-}
-
 }  // namespace
 }  // namespace meshlode
 
 using namespace meshlode;
+using namespace meshlode::run::c;
 
 uint32_t meshlode_version(void) {
   return MESHLODE_VERSION;
@@ -229,11 +134,11 @@ const void* meshlode_blob_bytes(const meshlode_asset* asset, uint32_t blob, size
 
 meshlode_status meshlode_choose_promise(meshlode_asset* asset, uint32_t promise, meshlode_error* error) {
   if (promise > MESHLODE_PROMISE_APPEARANCE) {
-    return meshlode::fail(error, MESHLODE_USAGE, "promise: is not one of its enumerators");
+    return fail(error, MESHLODE_USAGE, "promise: is not one of its enumerators");
   }
-  return meshlode::guard(error, [&] {
+  return guard(error, [&] {
     const meshlode::Status chosen = asset->asset.choose(static_cast<meshlode::format::Promise>(promise));
-    return chosen ? meshlode::succeed(error) : meshlode::fail(error, chosen.error());
+    return chosen ? succeed(error) : fail(error, chosen.error());
   });
 }
 
@@ -248,22 +153,7 @@ const char* meshlode_scene_json(const meshlode_asset* asset, size_t* bytes) {
 
 meshlode_status meshlode_select_view(const meshlode_asset* asset, const meshlode_view* view, double pixel_error,
                                      meshlode_draw_item* items, size_t capacity, size_t* count, meshlode_error* error) {
-  const run::ViewFault fault = run::fault_of_view(*view);
-  if (fault.field != nullptr) {
-    return fail(error, MESHLODE_USAGE, (std::string("view->") + fault.field + " " + fault.detail).c_str());
-  }
-  const run::Camera camera = run::camera_of_view(*view);
-  if (!(pixel_error >= 0.0) || !std::isfinite(pixel_error)) {
-    return fail(error, MESHLODE_USAGE, "pixel_error is not a number >= 0");
-  }
-  return guard(error, [&] {
-    const std::vector<run::ClusterInstance> drawn = run::select_bvh(asset->asset, camera, pixel_error);
-    *count = drawn.size();
-    for (std::size_t i = 0; i < std::min(capacity, drawn.size()); ++i) {
-      items[i] = {drawn[i].instance.value, drawn[i].cluster.value};
-    }
-    return drawn.size() <= capacity ? succeed(error) : fail(error, MESHLODE_TOO_SMALL, "more items than capacity");
-  });
+  return meshlode_select_frustum(asset, view, nullptr, pixel_error, items, capacity, count, error);
 }
 
 meshlode_status meshlode_select_uniform(const meshlode_asset* asset, uint32_t mesh, double max_error,
@@ -295,7 +185,7 @@ const uint32_t* meshlode_page_dependencies(const meshlode_asset* asset, uint32_t
 
 meshlode_status meshlode_streaming_order(const meshlode_asset* asset, uint32_t* pages, meshlode_error* error) {
   return guard(error, [&] {
-    const std::vector<std::uint32_t> order = order_pages(asset->asset);
+    const std::vector<std::uint32_t> order = run::streaming_order(asset->asset);
     std::copy(order.begin(), order.end(), pages);
     return succeed(error);
   });

@@ -2,9 +2,12 @@
 // The camera of a caller's view, for the C++ and the C side: both views have the same fields.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 
+#include "run/select/frustum.h"
 #include "run/select/select.h"
 
 namespace meshlode::run {
@@ -45,6 +48,31 @@ Camera camera_of_view(const View& view) {
   camera.height = view.height_px;
   camera.width = view.height_px;
   return camera;
+}
+
+constexpr const char* kFrustumFault = "target, up and aspect do not make a picture";
+
+/// Nothing where there is no picture: numbers that are not finite, a target at the eye, an up that is parallel.
+inline std::optional<Frustum> frustum_of_view(const Camera& camera, const double target[3], const double up[3],
+                                              double aspect) {
+  FrustumShape shape;
+  // Of any length, with the largest entry 1: NaN where there is none.
+  const auto scaled = [](const Vec3d& v) { return v / std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); };
+  shape.eye = camera.eye;
+  shape.forward = scaled(Vec3d(target[0], target[1], target[2]) - camera.eye);
+  shape.up = scaled({up[0], up[1], up[2]});
+  shape.is_orthographic = camera.is_orthographic;
+  shape.half_height = camera.is_orthographic ? 0.5 * camera.ortho_height : std::tan(0.5 * camera.fovy);
+  shape.aspect = aspect;
+  const Vec3d side = glm::cross(shape.forward, shape.up);
+  if (!(aspect > 0.0) || !(glm::dot(side, side) > 1e-18)) return std::nullopt;
+  const Frustum frustum = make_frustum(shape);
+  for (const auto& plane : frustum.planes) {
+    for (const double value : plane) {
+      if (!std::isfinite(value)) return std::nullopt;
+    }
+  }
+  return frustum;
 }
 
 }  // namespace meshlode::run

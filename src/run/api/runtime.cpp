@@ -4,6 +4,7 @@
 #include <meshlode/runtime.h>
 
 #include <cmath>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -11,7 +12,11 @@
 #include "run/api/camera_of_view.h"
 #include "run/decode/decode.h"
 #include "run/read/asset.h"
+#include "run/read/find_image.h"
+#include "run/read/sections.h"
+#include "run/select/resident.h"
 #include "run/select/select.h"
+#include "run/select/streaming_order.h"
 #include "run/unpack/unpack.h"
 
 namespace meshlode {
@@ -35,7 +40,34 @@ void copy_vectors(const std::vector<In>& from, std::vector<Out>& to) {
   }
 }
 
+/// What selecting takes beside the camera.
+Result<run::Camera> make_camera(const View& view, double pixel_error) {
+  TRY_LET(camera, make_camera(view));
+  if (!(pixel_error >= 0.0) || !std::isfinite(pixel_error)) return usage("pixel_error", "is not a number >= 0");
+  return *camera;
+}
+
+/// The two are the same planes.
+std::optional<run::Frustum> planes_of(const Frustum* frustum) {
+  return frustum != nullptr ? std::optional(run::Frustum{frustum->planes}) : std::nullopt;
+}
+
+static_assert(sizeof(run::ClusterInstance) == sizeof(DrawItem) && sizeof(run::PageRequest) == sizeof(PageRequest));
+
 }  // namespace
+
+Result<Frustum> make_frustum(const View& view, const std::array<double, 3>& target, const std::array<double, 3>& up,
+                             double aspect) {
+  TRY_LET(camera, make_camera(view));
+  const auto planes = run::frustum_of_view(*camera, target.data(), up.data(), aspect);
+  if (!planes) return usage("frustum", run::kFrustumFault);
+  return Frustum{planes->planes};
+}
+
+Result<HeadSize> find_head(std::span<const std::uint8_t> first, std::uint64_t file_bytes) {
+  TRY_LET(head, run::find_head(first, file_bytes));
+  return HeadSize{head->bytes, head->is_known};
+}
 
 struct PageBytes::State {
   run::PageBytes bytes;
@@ -73,6 +105,41 @@ struct AssetFile::State {
   }
 };
 
+struct ResidentSelector::State {
+  const run::Asset* asset;
+  run::ResidentSelector selector;
+};
+
+ResidentSelector::ResidentSelector(std::unique_ptr<State> state) : state_(std::move(state)) {}
+ResidentSelector::ResidentSelector(ResidentSelector&&) noexcept = default;
+ResidentSelector& ResidentSelector::operator=(ResidentSelector&&) noexcept = default;
+ResidentSelector::~ResidentSelector() = default;
+
+Status ResidentSelector::select(const View& view, double pixel_error, std::span<const std::uint32_t> resident,
+                                std::vector<DrawItem>& items, const Frustum* frustum) {
+  TRY_LET(camera, make_camera(view, pixel_error));
+  const auto planes = planes_of(frustum);
+  const run::ResidentQuery query{*camera, pixel_error, resident, planes ? &*planes : nullptr};
+  const run::SelectTables tables = run::tables_of(*state_->asset);
+  items.resize(items.capacity());
+  for (;;) {
+    const std::size_t count =
+        state_->selector.select(tables, query, {reinterpret_cast<run::ClusterInstance*>(items.data()), items.size()});
+    const bool is_whole = count <= items.size();
+    items.resize(count);
+    if (is_whole) return Ok{};
+  }
+}
+
+std::span<const PageRequest> ResidentSelector::requests() const {
+  const auto requests = state_->selector.requests();
+  return {reinterpret_cast<const PageRequest*>(requests.data()), requests.size()};
+}
+
+std::span<const float> ResidentSelector::page_priorities() const {
+  return state_->selector.page_priorities();
+}
+
 AssetFile::AssetFile(std::unique_ptr<State> state) : state_(std::move(state)) {}
 AssetFile::AssetFile(AssetFile&&) noexcept = default;
 AssetFile& AssetFile::operator=(AssetFile&&) noexcept = default;
@@ -86,6 +153,13 @@ Result<AssetFile> AssetFile::view(std::span<const std::uint8_t> bytes) {
 }
 Result<AssetFile> AssetFile::take(std::vector<std::uint8_t> bytes) {
   return State::wrap(run::Asset::from_vector(std::move(bytes)));
+}
+
+Result<AssetFile> AssetFile::view_head(std::span<const std::uint8_t> bytes, std::uint64_t file_bytes) {
+  return State::wrap(run::Asset::from_head(bytes, file_bytes));
+}
+Result<AssetFile> AssetFile::take_head(std::vector<std::uint8_t> bytes, std::uint64_t file_bytes) {
+  return State::wrap(run::Asset::from_head(std::move(bytes), file_bytes));
 }
 
 const format::FileHeader& AssetFile::header() const {
@@ -130,6 +204,18 @@ std::string_view AssetFile::text(format::StringRef ref) const {
 std::span<const std::uint8_t> AssetFile::blob_bytes(const format::BlobRecord& blob) const {
   return state_->asset.blob_bytes(blob);
 }
+ByteRange AssetFile::blob_range(const format::BlobRecord& blob) const {
+  return {blob.offset, blob.bytes};
+}
+Status AssetFile::check_blob(std::uint32_t blob, std::span<const std::uint8_t> bytes) const {
+  return run::check_blob(state_->asset, blob, bytes);
+}
+std::uint32_t AssetFile::image_of_texture(std::uint32_t texture) const {
+  return run::find_image_of_texture(state_->asset, texture);
+}
+std::uint32_t AssetFile::blob_of_image(std::uint32_t image) const {
+  return run::find_blob_of_image(state_->asset, image);
+}
 std::string_view AssetFile::meta_json() const {
   return state_->asset.meta_json();
 }
@@ -142,14 +228,22 @@ Status AssetFile::choose_promise(format::Promise promise) {
   return state_->asset.choose(promise);
 }
 
-Result<std::vector<DrawItem>> AssetFile::select_view(const View& view, double pixel_error) const {
-  TRY_LET(camera, make_camera(view));
-  if (!(pixel_error >= 0.0) || !std::isfinite(pixel_error)) return usage("pixel_error", "is not a number >= 0");
-  const std::vector<run::ClusterInstance> drawn = run::select_bvh(state_->asset, *camera, pixel_error);
+Result<std::vector<DrawItem>> AssetFile::select_view(const View& view, double pixel_error,
+                                                     const Frustum* frustum) const {
+  TRY_LET(camera, make_camera(view, pixel_error));
+  const auto planes = planes_of(frustum);
+  const std::vector<run::ClusterInstance> drawn =
+      run::select_bvh(state_->asset, *camera, pixel_error, {}, planes ? &*planes : nullptr);
   std::vector<DrawItem> items;
   items.reserve(drawn.size());
   for (const run::ClusterInstance& d : drawn) items.push_back({d.instance.value, d.cluster.value});
   return items;
+}
+
+ResidentSelector AssetFile::resident_selector() const {
+  const run::Asset& asset = state_->asset;
+  return ResidentSelector(std::make_unique<ResidentSelector::State>(
+      ResidentSelector::State{&asset, run::ResidentSelector(run::tables_of(asset))}));
 }
 
 Result<UniformCut> AssetFile::select_uniform(std::uint32_t mesh, double max_error) const {
@@ -163,6 +257,10 @@ Result<UniformCut> AssetFile::select_uniform(std::uint32_t mesh, double max_erro
   return result;
 }
 
+std::vector<std::uint32_t> AssetFile::streaming_order() const {
+  return run::streaming_order(state_->asset);
+}
+
 std::uint32_t AssetFile::page_of(std::uint32_t cluster) const {
   return state_->page_of(cluster);
 }
@@ -171,6 +269,17 @@ Result<PageBytes> AssetFile::load_page(std::uint32_t page) const {
   if (page >= state_->asset.pages().size()) return usage("page", "does not exist");
   TRY_LET(bytes, run::load_page(state_->asset, PageId(page)));
   return PageBytes(std::make_unique<PageBytes::State>(PageBytes::State{std::move(*bytes), page, state_.get()}));
+}
+
+ByteRange AssetFile::page_range(std::uint32_t page) const {
+  return {pages()[page].offset, pages()[page].stored_bytes};
+}
+
+Result<PageBytes> AssetFile::unpack_page(std::uint32_t page, std::span<const std::uint8_t> stored,
+                                         std::span<std::uint32_t> out) const {
+  TRY(run::unpack_stored_page(state_->asset, PageId(page), stored, out));
+  const std::span bytes{reinterpret_cast<const std::uint8_t*>(out.data()), pages()[page].bytes};
+  return PageBytes(std::make_unique<PageBytes::State>(PageBytes::State{run::PageBytes(bytes), page, state_.get()}));
 }
 
 Status AssetFile::decode(const PageBytes& page, std::uint32_t cluster, ClusterIntegers& out) const {

@@ -59,29 +59,57 @@ Result<Asset> Asset::from_vector(std::vector<std::uint8_t> bytes) {
   return asset;
 }
 
+Result<Asset> Asset::from_head(std::span<const std::uint8_t> bytes, std::uint64_t file_bytes) {
+  Asset asset;
+  asset.bytes_ = bytes;
+  TRY(asset.index_head(file_bytes));
+  return asset;
+}
+
+Result<Asset> Asset::from_head(std::vector<std::uint8_t> bytes, std::uint64_t file_bytes) {
+  Asset asset;
+  asset.bytes_ = bytes;
+  asset.storage_ = std::move(bytes);
+  TRY(asset.index_head(file_bytes));
+  return asset;
+}
+
+Status Asset::index_head(std::uint64_t file_bytes) {
+  TRY_LET(head, find_head(bytes_, file_bytes));
+  if (bytes_.size() < head->bytes) {
+    return Error{
+        ErrorCode::kInvalid, "head",
+        "has " + std::to_string(bytes_.size()) + " bytes, at least " + std::to_string(head->bytes) + " are needed"};
+  }
+  bytes_ = bytes_.first(head->bytes);
+  has_body_ = false;
+  return index(file_bytes);
+}
+
 std::optional<FileId> Asset::file_id() const {
   const auto* file = std::get_if<MappedFile>(&storage_);
   return file != nullptr ? std::optional(file->id()) : std::nullopt;
 }
 
 std::span<const std::uint8_t> Asset::blob_bytes(const format::BlobRecord& blob) const {
-  return bytes_.subspan(blob.offset, blob.bytes);
+  return has_body_ ? bytes_.subspan(blob.offset, blob.bytes) : std::span<const std::uint8_t>();
 }
 
 std::span<const std::uint8_t> Asset::stored_page(PageId page) const {
   const format::PageRecord& record = pages_[page.value];
-  return bytes_.subspan(record.offset, record.stored_bytes);
+  return has_body_ ? bytes_.subspan(record.offset, record.stored_bytes) : std::span<const std::uint8_t>();
 }
 
 std::span<const std::uint8_t> Asset::section_bytes(const format::SectionEntry& entry) const {
-  if (entry.bytes == 0) return {};  // at the offset of the section behind it
+  if (entry.bytes == 0) return {};               // at the offset of the section behind it
+  if (entry.offset >= bytes_.size()) return {};  // pages and images, which a head is without
   const auto decoded = decoded_.find(entry.offset);
   return decoded != decoded_.end() ? std::span<const std::uint8_t>(decoded->second)
                                    : bytes_.subspan(entry.offset, entry.bytes);
 }
 
-Status Asset::index() {
-  TRY_LET(sections, index_sections(bytes_));
+Status Asset::index(std::uint64_t file_bytes) {
+  TRY_LET(sections, index_sections(bytes_, file_bytes));
   using enum format::SectionId;
   // Of a processor of 32 bits no vector is larger, whatever the caller allows.
   std::uint64_t left = std::min<std::uint64_t>(max_decoded_bytes(), std::numeric_limits<std::size_t>::max());

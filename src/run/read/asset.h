@@ -32,6 +32,15 @@ class Asset {
   /// Takes the bytes.
   [[nodiscard]] static Result<Asset> from_vector(std::vector<std::uint8_t> bytes);
 
+  /// Views the head of a file of `file_bytes`: at least all bytes before its pages and images (find_head, sections.h),
+  /// which must outlive the asset and be aligned to 8 bytes. What lies behind them is not looked at, and is not there:
+  /// stored_page() and blob_bytes() are empty. Errors: as above; kUnsupported where tables lie behind pages or images.
+  [[nodiscard]] static Result<Asset> from_head(std::span<const std::uint8_t> bytes, std::uint64_t file_bytes);
+  /// Takes the bytes.
+  [[nodiscard]] static Result<Asset> from_head(std::vector<std::uint8_t> bytes, std::uint64_t file_bytes);
+  /// False of a head.
+  [[nodiscard]] bool has_body() const { return has_body_; }
+
   /// The file that open() mapped; nothing for bytes.
   [[nodiscard]] std::optional<FileId> file_id() const;
 
@@ -63,7 +72,7 @@ class Asset {
   [[nodiscard]] std::string_view string(format::StringRef ref) const { return strings_.substr(ref.offset, ref.bytes); }
   [[nodiscard]] std::span<const std::uint8_t> blob_bytes(const format::BlobRecord& blob) const;
   [[nodiscard]] std::span<const std::uint8_t> stored_page(PageId page) const;   ///< as on disk
-  [[nodiscard]] std::span<const std::uint8_t> bytes() const { return bytes_; }  ///< the whole file
+  [[nodiscard]] std::span<const std::uint8_t> bytes() const { return bytes_; }  ///< the whole file, or its head
   /// What whoever decodes the asset as a whole may take for it.
   [[nodiscard]] std::uint64_t max_decoded_bytes() const { return decoded_limit(bytes_.size(), max_decoded_); }
   /// The decoded bytes of one of sections() that is known; PAGE and BLOB as they are stored.
@@ -71,10 +80,13 @@ class Asset {
 
  private:
   Asset() = default;
-  [[nodiscard]] Status index();
+  [[nodiscard]] Status index(std::uint64_t file_bytes);
+  [[nodiscard]] Status index() { return index(bytes_.size()); }
+  [[nodiscard]] Status index_head(std::uint64_t file_bytes);
 
   std::variant<std::monostate, MappedFile, std::vector<std::uint8_t>> storage_;
   std::span<const std::uint8_t> bytes_;
+  bool has_body_ = true;
   std::uint64_t max_decoded_ = kDefaultMaxDecoded;
   /// Of sections that are stored by columns, by their offset in the file; the others are viewed where they lie.
   std::map<std::uint64_t, std::vector<std::uint8_t>> decoded_;

@@ -46,7 +46,21 @@ constexpr std::array kKnownSections{
     KnownSection{SectionId::kBlobData, 0},
 };
 
-Status check_header(std::span<const std::uint8_t> bytes, const format::FileHeader& header) {
+/// Null where this reader does not know it.
+const KnownSection* find_known(std::uint32_t id) {
+  for (const KnownSection& section : kKnownSections) {
+    if (static_cast<std::uint32_t>(section.id) == id) return &section;
+  }
+  return nullptr;
+}
+
+std::uint64_t table_end(const format::FileHeader& header) {
+  return sizeof(format::FileHeader) + std::uint64_t{header.section_count} * sizeof(format::SectionEntry);
+}
+
+/// All but the checksum.
+Status check_header(const format::FileHeader& header, std::uint64_t file_bytes) {
+  if (header.magic != format::kMagic) return invalid_header("magic", "this is not a .lode file");
   if (header.version != format::kPlainVersion && header.version != format::kVersion) {
     return Error{ErrorCode::kUnsupported, "header, field version",
                  "version " + std::to_string(header.version) + ", this reader knows versions " +
@@ -57,28 +71,38 @@ Status check_header(std::span<const std::uint8_t> bytes, const format::FileHeade
     return invalid_header("section_entry_bytes", "must be 64");
   }
   if (header.flags != 0) return invalid_header("flags", "must be 0");
-  if (header.file_bytes != bytes.size()) {
-    return invalid_header(
-        "file_bytes", "says " + std::to_string(header.file_bytes) + ", the file has " + std::to_string(bytes.size()));
+  if (header.file_bytes != file_bytes) {
+    return invalid_header("file_bytes",
+                          "says " + std::to_string(header.file_bytes) + ", the file has " + std::to_string(file_bytes));
   }
   if (header.section_table_offset != sizeof(format::FileHeader)) {
     return invalid_header("section_table_offset", "must be 64");
   }
-  if (header.section_count > (bytes.size() - sizeof(format::FileHeader)) / sizeof(format::SectionEntry)) {
+  if (table_end(header) > file_bytes) {
     return invalid_header("section_count", "the table reaches beyond the end of the file");
   }
-  const std::size_t covered = sizeof(format::FileHeader) + header.section_count * sizeof(format::SectionEntry);
-  std::vector<std::uint8_t> sealed(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(covered));
+  return Ok{};
+}
+
+/// \pre `bytes` reach to the end of the section table
+Status check_header_checksum(std::span<const std::uint8_t> bytes, const format::FileHeader& header) {
+  const auto covered = bytes.first(table_end(header));
+  std::vector<std::uint8_t> sealed(covered.begin(), covered.end());
   std::fill_n(sealed.begin() + offsetof(format::FileHeader, header_checksum), sizeof(header.header_checksum),
               std::uint8_t{0});
   if (hash64(sealed) != header.header_checksum) return invalid_header("header_checksum", "does not match");
   return Ok{};
 }
 
+bool is_body(std::uint32_t id) {
+  return id == static_cast<std::uint32_t>(SectionId::kPageData) ||
+         id == static_cast<std::uint32_t>(SectionId::kBlobData);
+}
+
 /// Sections follow each other in table order, with fewer than 16 zero bytes between them: nothing hides in a gap.
-Status check_extent(std::span<const std::uint8_t> bytes, const format::SectionEntry& entry,
+/// `bytes`: those of the file that are there, from its start.
+Status check_extent(std::span<const std::uint8_t> bytes, std::uint64_t size, const format::SectionEntry& entry,
                     std::uint64_t previous_end) {
-  const std::uint64_t size = bytes.size();
   if (entry.offset % format::kSectionAlignment != 0) {
     return invalid_section(entry.id, "offset", "is not a multiple of 16");
   }
@@ -88,7 +112,7 @@ Status check_extent(std::span<const std::uint8_t> bytes, const format::SectionEn
   if (entry.offset > size || entry.bytes > size - entry.offset) {
     return invalid_section(entry.id, "bytes", "reaches beyond the end of the file");
   }
-  for (std::uint64_t at = previous_end; at < entry.offset; ++at) {
+  for (std::uint64_t at = previous_end; at < entry.offset && at < bytes.size(); ++at) {
     if (bytes[at] != 0) return invalid_section(entry.id, "offset", "the padding before it is not zero");
   }
   return Ok{};
@@ -101,8 +125,7 @@ Status check_known(std::span<const std::uint8_t> bytes, const format::SectionEnt
   }
   if ((entry.flags & ~format::kSectionRequired) != 0U) return invalid_section(entry.id, "flags", "has an unknown bit");
   const auto id = static_cast<SectionId>(entry.id);
-  const bool is_raw = id == SectionId::kPageData || id == SectionId::kBlobData;
-  if (entry.codec == static_cast<std::uint32_t>(format::SectionCodec::kColumns) && !is_raw) {
+  if (entry.codec == static_cast<std::uint32_t>(format::SectionCodec::kColumns) && !is_body(entry.id)) {
     if (entry.decoded_bytes / format::kMaxSectionRatio > entry.bytes || entry.decoded_bytes == 0) {
       return invalid_section(entry.id, "decoded_bytes", "cannot come from so few bytes");
     }
@@ -131,7 +154,7 @@ Status check_known(std::span<const std::uint8_t> bytes, const format::SectionEnt
 
 }  // namespace
 
-Result<SectionIndex> index_sections(std::span<const std::uint8_t> bytes) {
+Result<SectionIndex> index_sections(std::span<const std::uint8_t> bytes, std::uint64_t file_bytes) {
   if (bytes.size() < sizeof(format::FileHeader)) {
     return invalid_header("magic", "the file has " + std::to_string(bytes.size()) + " bytes, a header has 64");
   }
@@ -140,19 +163,17 @@ Result<SectionIndex> index_sections(std::span<const std::uint8_t> bytes) {
   }
   SectionIndex index;
   index.header = reinterpret_cast<const format::FileHeader*>(bytes.data());
-  if (index.header->magic != format::kMagic) return invalid_header("magic", "this is not a .lode file");
-  TRY(check_header(bytes, *index.header));
+  TRY(check_header(*index.header, file_bytes));
+  TRY(check_header_checksum(bytes, *index.header));
   index.entries = {reinterpret_cast<const format::SectionEntry*>(bytes.data() + sizeof(format::FileHeader)),
                    index.header->section_count};
 
   std::uint64_t end = sizeof(format::FileHeader) + index.entries.size_bytes();
   for (const format::SectionEntry& entry : index.entries) {
-    TRY(check_extent(bytes, entry, end));
+    TRY(check_extent(bytes, file_bytes, entry, end));
     end = entry.offset + entry.bytes;
-    const auto known = std::find_if(kKnownSections.begin(), kKnownSections.end(), [&](const KnownSection& section) {
-      return static_cast<std::uint32_t>(section.id) == entry.id;
-    });
-    if (known == kKnownSections.end()) {
+    const KnownSection* const known = find_known(entry.id);
+    if (known == nullptr) {
       if ((entry.flags & format::kSectionRequired) != 0U) {
         return Error{ErrorCode::kUnsupported, "section " + section_tag(entry.id),
                      "is required and not known to this reader"};
@@ -162,13 +183,42 @@ Result<SectionIndex> index_sections(std::span<const std::uint8_t> bytes) {
     TRY(check_known(bytes, entry, known->record_bytes));
     if (!index.known.emplace(known->id, &entry).second) return invalid_section(entry.id, "id", "is there twice");
   }
-  if (end != bytes.size()) return invalid_header("file_bytes", "the last section does not end the file");
+  if (end != file_bytes) return invalid_header("file_bytes", "the last section does not end the file");
   for (const KnownSection& section : kKnownSections) {
     if (!section.is_optional && index.find(section.id) == nullptr) {
       return Error{ErrorCode::kInvalid, "section " + section_tag(static_cast<std::uint32_t>(section.id)), "is missing"};
     }
   }
   return index;
+}
+
+Result<HeadSize> find_head(std::span<const std::uint8_t> first, std::uint64_t file_bytes) {
+  if (file_bytes < sizeof(format::FileHeader)) {
+    return invalid_header("magic", "the file has " + std::to_string(file_bytes) + " bytes, a header has 64");
+  }
+  format::FileHeader header;
+  if (first.size() < sizeof(header)) return HeadSize{sizeof(header), false};
+  std::memcpy(&header, first.data(), sizeof(header));
+  TRY(check_header(header, file_bytes));
+  if (first.size() < table_end(header)) return HeadSize{table_end(header), false};
+  TRY(check_header_checksum(first, header));
+  HeadSize head{file_bytes, true};
+  bool is_behind_body = false;
+  std::uint64_t end = table_end(header);
+  for (std::uint32_t i = 0; i < header.section_count; ++i) {
+    format::SectionEntry entry;
+    std::memcpy(&entry, first.data() + sizeof(header) + i * sizeof(entry), sizeof(entry));
+    TRY(check_extent(first, file_bytes, entry, end));
+    end = entry.offset + entry.bytes;
+    if (is_body(entry.id)) {
+      if (!is_behind_body) head.bytes = entry.offset;
+      is_behind_body = true;
+    } else if (is_behind_body && find_known(entry.id) != nullptr) {
+      return Error{ErrorCode::kUnsupported, "section " + section_tag(entry.id),
+                   "lies behind the pages or images, so that the file cannot be opened from its head"};
+    }
+  }
+  return head;
 }
 
 }  // namespace meshlode::run

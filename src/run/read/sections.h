@@ -28,8 +28,17 @@ struct SectionIndex {
   }
 };
 
-/// Checks sizes, offsets, order, gaps, versions and every checksum but those of pages and blobs.
-/// `bytes` must be aligned to 8 bytes.
-[[nodiscard]] Result<SectionIndex> index_sections(std::span<const std::uint8_t> bytes);
+/// Checks sizes, offsets, order, gaps, versions and every checksum but those of pages and blobs. `bytes`, aligned to 8,
+/// are the first of a file of `file_bytes`: all of them, or its head at least (find_head).
+[[nodiscard]] Result<SectionIndex> index_sections(std::span<const std::uint8_t> bytes, std::uint64_t file_bytes);
+
+/// How many bytes lie before the first of PAGE and BLOB: all tables, and so all that opening reads.
+struct HeadSize {
+  std::uint64_t bytes = 0;  ///< at most those of the file
+  bool is_known = false;    ///< false: this many of the first bytes are needed to say it
+};
+/// From the first bytes of a file, at any address and as many as there are. Errors: those of index_sections as far as
+/// it is asked; kUnsupported where a table lies behind PAGE or BLOB.
+[[nodiscard]] Result<HeadSize> find_head(std::span<const std::uint8_t> first, std::uint64_t file_bytes);
 
 }  // namespace meshlode::run

@@ -7,21 +7,10 @@
 #include <cstdint>
 #include <map>
 
+#include "run/select/open_groups.h"
+
 namespace meshlode::run {
 namespace {
-
-bool passes(const MetricView& view, const format::GroupRecord& group) {
-  return metric_passes(view, group.center[0], group.center[1], group.center[2], group.radius, group.error);
-}
-
-bool passes(const MetricView& view, const format::NodeRecord& node) {
-  return metric_passes(view, node.center[0], node.center[1], node.center[2], node.radius, node.error);
-}
-
-bool is_drawable(const SelectTables& tables, const format::InstanceRecord& instance) {
-  return (instance.flags & format::kInstanceSingular) == 0 && instance.mesh < tables.meshes.size() &&
-         tables.meshes[instance.mesh].group_count > 0;
-}
 
 enum class Answer : std::uint8_t { kUnknown, kPasses, kFails };
 
@@ -71,87 +60,71 @@ namespace {
 
 /// Stops behind the instance that makes the cut larger than `max_clusters`.
 std::vector<ClusterInstance> traverse(const SelectTables& tables, const Camera& camera, double pixel_error,
-                                      TraversalCount* count, const AttributeBounds& bounds, std::size_t max_clusters) {
+                                      TraversalCount* count, const AttributeBounds& bounds, std::size_t max_clusters,
+                                      const Frustum* frustum) {
   std::vector<ClusterInstance> cut;
-  std::vector<std::uint32_t> stack, open_groups;
+  OpenGroups open;
   // All unknown between instances: only what was answered is taken back, so that a far instance costs what it looks at.
   std::vector<Answer> answers;
   std::vector<std::uint32_t> answered;
   std::map<std::uint32_t, std::vector<std::uint8_t>> nodes_within_mesh;
-  TraversalCount work;
   for (std::size_t i = 0; i < tables.instances.size(); ++i) {
     const format::InstanceRecord& instance = tables.instances[i];
     if (!is_drawable(tables, instance)) continue;
     if (cut.size() > max_clusters) break;
     const format::MeshRecord& mesh = tables.meshes[instance.mesh];
-    const MetricView view = make_metric_view(camera, pixel_error, instance, mesh, mesh_reach(tables, mesh));
+    InstanceView view{mesh, make_metric_view(camera, pixel_error, instance, mesh, mesh_reach(tables, mesh)),
+                      frustum_of_mesh(frustum, instance, mesh)};
     const AttributeBounds own_bounds = bounds_for(bounds, mesh);
     // Per node of this mesh, where there are bounds at all; instances of a mesh share it.
-    const std::uint8_t* nodes_within = nullptr;
     if (own_bounds.has_any()) {
       const auto [found, is_new] = nodes_within_mesh.try_emplace(instance.mesh);
       if (is_new) found->second = find_nodes_within(tables, mesh, own_bounds);
-      nodes_within = found->second.data();
+      view.nodes_within = found->second.data();
     }
     for (const std::uint32_t g : answered) answers[g] = Answer::kUnknown;
     answered.clear();
     if (answers.size() < mesh.group_count) answers.resize(mesh.group_count, Answer::kUnknown);
-    open_groups.clear();
-    stack.assign(mesh.node_count > 0 ? 1 : 0, mesh.first_node);
-    while (!stack.empty()) {
-      const std::uint32_t node_id = stack.back();
-      stack.pop_back();
-      const format::NodeRecord& node = tables.nodes[node_id];
-      ++work.nodes;
-      const bool is_node_within = nodes_within == nullptr || nodes_within[node_id - mesh.first_node] != 0;
-      // Then every group below passes, and none of their members is drawn.
-      if (is_node_within && passes(view, node)) continue;
-      if (node.child_count == 0) {
-        open_groups.push_back(node.first);
-        answers[node.first - mesh.first_group] = Answer::kFails;  // a leaf has its group's own bits
-        answered.push_back(node.first - mesh.first_group);
-        continue;
-      }
-      // Children lie behind their node, which also keeps a damaged table from looping.
-      for (std::uint32_t c = 0; c < node.child_count && node.first > node_id; ++c) stack.push_back(node.first + c);
+    find_open_groups(tables, view, open);
+    for (const auto& [g, crossed] : open.groups) {
+      answers[g - mesh.first_group] = Answer::kFails;  // a leaf has its group's own bits
+      answered.push_back(g - mesh.first_group);
     }
-    // Members are contiguous, so sorting the groups sorts the clusters.
-    std::sort(open_groups.begin(), open_groups.end(), [&](std::uint32_t a, std::uint32_t b) {
-      return tables.groups[a].first_cluster < tables.groups[b].first_cluster;
-    });
-    for (const std::uint32_t g : open_groups) {
+    for (const auto& [g, crossed] : open.groups) {
       const format::GroupRecord& group = tables.groups[g];
       for (std::uint32_t id = group.first_cluster; id < group.first_cluster + group.cluster_count; ++id) {
-        ++work.clusters;
+        ++open.work.clusters;
         const std::uint32_t own = tables.clusters[id].own_group;
         if (own != format::kNone) {
           Answer& answer = answers[own - mesh.first_group];
           if (answer == Answer::kUnknown) {
             const format::GroupRecord& own_group = tables.groups[own];
-            answer = passes(view, own_group) && is_within(own_bounds, own_group) ? Answer::kPasses : Answer::kFails;
+            answer =
+                passes(view.metric, own_group) && is_within(own_bounds, own_group) ? Answer::kPasses : Answer::kFails;
             answered.push_back(own - mesh.first_group);
           }
           if (answer == Answer::kFails) continue;
         }
+        if (is_outside(view, crossed, tables.clusters[id])) continue;
         cut.push_back({InstanceId(i), ClusterId(id)});
       }
     }
   }
-  if (count != nullptr) *count = work;
+  if (count != nullptr) *count = open.work;
   return cut;
 }
 
 }  // namespace
 
 std::vector<ClusterInstance> select_bvh(const SelectTables& tables, const Camera& camera, double pixel_error,
-                                        TraversalCount* count, const AttributeBounds& bounds) {
-  return traverse(tables, camera, pixel_error, count, bounds, SIZE_MAX);
+                                        TraversalCount* count, const AttributeBounds& bounds, const Frustum* frustum) {
+  return traverse(tables, camera, pixel_error, count, bounds, SIZE_MAX, frustum);
 }
 
 std::optional<std::vector<ClusterInstance>> select_bvh_within(const SelectTables& tables, const Camera& camera,
                                                               double pixel_error, std::size_t max_clusters,
                                                               const AttributeBounds& bounds) {
-  std::vector<ClusterInstance> cut = traverse(tables, camera, pixel_error, nullptr, bounds, max_clusters);
+  std::vector<ClusterInstance> cut = traverse(tables, camera, pixel_error, nullptr, bounds, max_clusters, nullptr);
   if (cut.size() > max_clusters) return std::nullopt;
   return cut;
 }
@@ -185,8 +158,8 @@ std::vector<ClusterInstance> select_flat(const Asset& asset, const Camera& camer
 }
 
 std::vector<ClusterInstance> select_bvh(const Asset& asset, const Camera& camera, double pixel_error,
-                                        const AttributeBounds& bounds) {
-  return select_bvh(tables_of(asset), camera, pixel_error, nullptr, bounds);
+                                        const AttributeBounds& bounds, const Frustum* frustum) {
+  return select_bvh(tables_of(asset), camera, pixel_error, nullptr, bounds, frustum);
 }
 
 UniformCut select_uniform(const Asset& asset, MeshId mesh, double error, CutError by, const AttributeBounds& bounds) {

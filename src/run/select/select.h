@@ -15,6 +15,7 @@
 #include "base/vec.h"
 #include "run/read/asset.h"
 #include "run/select/attribute_bounds.h"
+#include "run/select/frustum.h"
 #include "run/select/metric.h"
 
 namespace meshlode::run {
@@ -59,9 +60,10 @@ struct ClusterInstance {
 /// none. With bounds, a group passes only where its attribute deviations are within them too.
 [[nodiscard]] std::vector<ClusterInstance> select_flat(const Asset& asset, const Camera& camera, double pixel_error,
                                                        const AttributeBounds& bounds = {});
-/// The same set through the BVH (I8).
+/// The same set through the BVH (I8). With a frustum, less what has its culling sphere outside.
 [[nodiscard]] std::vector<ClusterInstance> select_bvh(const Asset& asset, const Camera& camera, double pixel_error,
-                                                      const AttributeBounds& bounds = {});
+                                                      const AttributeBounds& bounds = {},
+                                                      const Frustum* frustum = nullptr);
 
 [[nodiscard]] std::vector<ClusterInstance> select_flat(const SelectTables& tables, const Camera& camera,
                                                        double pixel_error, const AttributeBounds& bounds = {});
@@ -72,7 +74,8 @@ struct TraversalCount {
 };
 [[nodiscard]] std::vector<ClusterInstance> select_bvh(const SelectTables& tables, const Camera& camera,
                                                       double pixel_error, TraversalCount* count = nullptr,
-                                                      const AttributeBounds& bounds = {});
+                                                      const AttributeBounds& bounds = {},
+                                                      const Frustum* frustum = nullptr);
 /// The same, or nothing where it has more than `max_clusters` entries: instances times clusters are a product that a
 /// small file may choose. It stops there.
 [[nodiscard]] std::optional<std::vector<ClusterInstance>> select_bvh_within(const SelectTables& tables,

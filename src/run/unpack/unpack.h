@@ -34,4 +34,13 @@ class PageBytes {
 /// trust it. Errors: kInvalid with the place; kUnsupported for a codec that was not built in.
 [[nodiscard]] Result<PageBytes> load_page(const Asset& asset, PageId page);
 
+/// The same from bytes that the caller read, at any address, into memory of the caller; of a head too. What lies
+/// between the pages is not looked at. Errors: as above; kUsage where `stored` is not as long as the page is stored, or
+/// `out` shorter than the page. After an error the content of `out` is undefined.
+[[nodiscard]] Status unpack_stored_page(const Asset& asset, PageId page, std::span<const std::uint8_t> stored,
+                                        std::span<std::uint32_t> out);
+
+/// The bytes of an image or buffer against the checksum of its record, which opening does not look at.
+[[nodiscard]] Status check_blob(const Asset& asset, std::uint32_t blob, std::span<const std::uint8_t> bytes);
+
 }  // namespace meshlode::run

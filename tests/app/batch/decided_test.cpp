@@ -12,7 +12,7 @@ namespace {
 TEST(Decided, SaysWhatIsKeptByWhichMeshesAndUnderWhichSettings) {
   builder::PipelineOptions options;
   EXPECT_EQ(describe_decided(options, {}),
-            "attributes none but positions; aggregates: none (masked); codec strips; promise position");
+            "attributes none but positions; aggregates: no mesh (--aggregate masked); codec strips; promise position");
   std::vector<builder::PlanDecision> decisions(5);
   decisions[0] = {"mesh 0: NORMAL", true, "shaded", false, "NORMAL"};
   decisions[1] = {"mesh 1: NORMAL", false, "flat", false, "NORMAL"};
@@ -23,7 +23,8 @@ TEST(Decided, SaysWhatIsKeptByWhichMeshesAndUnderWhichSettings) {
   options.promise = format::Promise::kTexels;
   options.aggregate = AggregateChoice::kAuto;
   EXPECT_EQ(describe_decided(options, decisions),
-            "attributes NORMAL of some meshes, TEXCOORD_0; aggregates: 1 mesh (auto); codec none; promise texels");
+            "attributes NORMAL of some meshes, TEXCOORD_0; aggregates: 1 mesh (--aggregate auto); codec none; promise "
+            "texels");
 }
 
 }  // namespace

@@ -172,6 +172,20 @@ TEST(MeshRules, OptionsOfMeshesReachTheAsset) {
   EXPECT_FALSE(builder::build_lode(scene, same, {}, report)) << "one for each mesh";
 }
 
+TEST(SettingsFile, APageSizeIsANumberOrItsText) {
+  for (const char* text :
+       {R"({"page-size": 32, "root-bytes": 65536})", R"({"page-size": "32", "root-bytes": "65536"})"}) {
+    const auto layer = parse_settings(text, "f");
+    ASSERT_TRUE(layer) << layer.error().message();
+    EXPECT_EQ(settle({&*layer, 1})->options.page_kib, 32U);
+    EXPECT_EQ(settle({&*layer, 1})->options.root_bytes, 65536U);
+  }
+  for (const char* text : {R"({"page-size": 48})", R"({"page-size": 32.5})", R"({"page-size": true})",
+                           R"({"root-bytes": 16383})", R"({"page-order": 1})"}) {
+    EXPECT_FALSE(parse_settings(text, "f")) << text;
+  }
+}
+
 class SettingsFolders : public ::testing::Test {
  protected:
   void SetUp() override {

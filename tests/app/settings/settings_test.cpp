@@ -154,6 +154,44 @@ TEST(Settings, AggregatesAreAChoiceOrNames) {
   EXPECT_FALSE(settled(""));
 }
 
+TEST(Settings, AUseDecidesWhatIsNotGiven) {
+  const SettingLayer engine = layer_of({{Setting::kFor, "engine"}});
+  const auto settled = settle({&engine, 1});
+  ASSERT_TRUE(settled);
+  EXPECT_EQ(settled->options.codec, format::Codec::kNone);
+  EXPECT_EQ((*settled)[Setting::kCodec].from, "for engine");
+  EXPECT_EQ(describe_use(*settled), "for engine: codec none");
+  EXPECT_EQ(describe_use(*settle({})), "");
+}
+
+TEST(Settings, WhatIsGivenAnywhereWinsOverAUse) {
+  const std::array layers{layer_of({{Setting::kCodec, "strips"}}, "a file"),
+                          layer_of({{Setting::kFor, "engine"}}, "the command line")};
+  const auto settled = settle(layers);
+  EXPECT_EQ(settled->options.codec, format::Codec::kStrips);
+  EXPECT_EQ((*settled)[Setting::kCodec].from, "a file");
+  EXPECT_EQ(describe_use(*settled), "for engine: every setting is given");
+}
+
+TEST(Settings, TheLastUseCountsAloneAndMeshesHaveItToo) {
+  std::array layers{layer_of({{Setting::kFor, "archive"}}), layer_of({{Setting::kFor, "web"}})};
+  EXPECT_EQ(settle(layers)->options.error_tier, format::ErrorTier::kMeasured);
+  layers[1].mesh_rules.push_back({"proxy", layer_of({{Setting::kAttributes, "none"}}).words});
+  const std::vector<std::string> names{"proxy", "tree"};
+  const auto meshes = settle_meshes(layers, names);
+  ASSERT_TRUE(meshes);
+  for (const SettledMesh& mesh : *meshes) EXPECT_EQ(mesh.options.normal_error, 0.5);
+  const SettingLayer any = layer_of({{Setting::kFor, "any"}});
+  EXPECT_EQ(settle({&any, 1})->options.normal_error, builder::PipelineOptions().normal_error);
+}
+
+TEST(Settings, AnUnknownUseIsRefusedWithTheNearest) {
+  const SettingLayer wrong = layer_of({{Setting::kFor, "engines"}});
+  const auto settled = settle({&wrong, 1});
+  ASSERT_FALSE(settled);
+  EXPECT_NE(settled.error().detail.find("engine"), std::string::npos) << settled.error().detail;
+}
+
 TEST(Settings, EachHasItsRow) {
   for (std::size_t i = 0; i < kSettingCount; ++i) {
     const SettingInfo& info = all_settings()[i];

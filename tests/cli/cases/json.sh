@@ -17,6 +17,8 @@ json render render a.lode -o a.png --size 64x48 --ortho 3 --error 0.01 --relativ
 json extract extract a.lode --error 0.01 --relative -o cut.glb --format json
 json repack repack a.lode -o strips.lode --codec strips --format json
 json measure measure a.lode --source a.glb --error-tier qem -o qem.lode --format json
+json stream stream a.lode --format json --check --log --fps 10
+json stream stream a.lode --format json --pool 0.001
 json validate validate a.lode a.lode --format json
 json report build missing.glb --format json
 files

@@ -28,7 +28,7 @@ code verify out.lode --source b.glb --quick --quiet
 run repack b.lode
 run repack b.lode -o c.lode
 run repack b.lode -o c.lode --codec gzip
-# Codecs of before 0.2: not written, and pages that have them are refused by name, whoever reads them.
+# Codecs that are no longer written: every reader refuses their pages by name.
 for codec in lz4 zstd draco; do
   "$STORE_BY" $codec none.lode $codec.lode
   run repack none.lode -o c.lode --codec $codec

@@ -66,3 +66,18 @@ ln -s in/meshlode.json link.lode
 run build in/city.glb -o link.lode
 rm -f ./*.lode
 files
+# What a use decides lies below every setting that is given, and has its own line in plan and build.
+echo '{"for": "engine", "normal-error": 1}' >in/meshlode.json
+"$JSON_CHECK" "$SCHEMAS/settings.schema.json" <in/meshlode.json
+"$MESHLODE" build in/city.glb -o engine.lode 2>&1 | grep decided
+tell engine.lode
+"$MESHLODE" build in/city.glb -o given.lode --for archive --preset fast --error-tier measured 2>&1 | grep decided
+tell given.lode
+"$MESHLODE" plan in/city.glb --for web | sed -n '/^settings/,/^attributes/p'
+echo '{"for": "engine"}' >in/meshlode.json
+code build --quiet in/city.glb -o engine.lode --cache kept
+code build --quiet in/city.glb -o by-hand.lode --no-settings-file --codec none --cache kept
+cmp engine.lode by-hand.lode && echo "the same asset, and the same entry of the cache: $(ls kept/record | wc -l)"
+run build in/city.glb -o x.lode --for engines
+echo '{"meshes": {"*": {"for": "web"}}}' >in/meshlode.json
+run build in/city.glb -o x.lode

@@ -6,7 +6,7 @@ code --version
 run frobnicate
 run VLIDATE
 run --versoin
-for verb in build merge plan doctor info compare sweep validate verify render extract repack measure report cache completion man; do
+for verb in build merge plan doctor info compare sweep stream validate verify render extract repack measure report cache completion man; do
   code "$verb" --help
   code "$verb"
   code "$verb" a.lode --no-such-option

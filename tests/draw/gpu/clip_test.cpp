@@ -9,6 +9,7 @@
 
 #include "gpu_support.h"
 #include "judge/gpu/compare_frame.h"
+#include "support/parallel_camera.h"
 
 namespace meshlode::draw::test {
 namespace {
@@ -17,14 +18,8 @@ using Clip = GpuTest;
 
 /// Looks along -z, eight units high; its near plane is z = 2.
 run::Camera cutting_camera(std::uint32_t width, std::uint32_t height) {
-  run::Camera camera;
-  camera.eye = {0.0, 0.0, 10.0};
-  camera.target = {0.0, 0.0, 0.0};
-  camera.is_orthographic = true;
-  camera.ortho_height = 8.0;
+  run::Camera camera = meshlode::test::parallel_camera({0.0, 0.0, 0.0}, 10.0, 8.0, width, height);
   camera.near_distance = 8.0;
-  camera.width = width;
-  camera.height = height;
   return camera;
 }
 

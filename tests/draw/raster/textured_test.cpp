@@ -9,6 +9,7 @@
 #include "draw/raster/raster.h"
 #include "lab/samples/write_png.h"
 #include "support/mask_scene.h"
+#include "support/parallel_camera.h"
 
 namespace meshlode::draw {
 namespace {
@@ -94,12 +95,7 @@ struct Picture {
 Picture picture_of(const CardOptions& options) {
   const auto asset = run::Asset::from_vector(test::built(card_scene(options)));
   EXPECT_TRUE(asset);
-  run::Camera camera;
-  camera.eye = {0.0, 0.0, 5.0};
-  camera.target = {0.0, 0.0, 0.0};
-  camera.is_orthographic = true;
-  camera.ortho_height = 4.0;
-  camera.width = camera.height = 64;
+  const run::Camera camera = meshlode::test::parallel_camera({0.0, 0.0, 0.0}, 5.0, 4.0, 64, 64);
   const auto cut = run::select_flat(*asset, camera, 0.0);
   auto visibility = draw_cut(*asset, cut, camera);
   EXPECT_TRUE(visibility);

@@ -8,6 +8,7 @@
 #include "judge/pictures/id_judge.h"
 #include "lab/samples/samples.h"
 #include "support/mask_scene.h"
+#include "support/parallel_camera.h"
 #include "support/plate_scene.h"
 
 namespace meshlode::judge {
@@ -21,14 +22,7 @@ using meshlode::test::plate_scene;
 
 /// 80 millimetres high in 400 pixels: five pixels a millimetre, straight from the front.
 run::Camera front() {
-  run::Camera camera;
-  camera.eye = {50.0, 30.0, 100.0};
-  camera.target = {50.0, 30.0, 0.0};
-  camera.is_orthographic = true;
-  camera.ortho_height = 80.0;
-  camera.width = 600;
-  camera.height = 400;
-  return camera;
+  return meshlode::test::parallel_camera({50.0, 30.0, 0.0}, 100.0, 80.0, 600, 400);
 }
 
 /// Level 0 of an asset of `drawn` against `source`, as a cut of `pixel_error` would be.

@@ -13,6 +13,7 @@
 #include "lab/page/pictures.h"
 #include "lab/page/read_sweep.h"
 #include "lab/page/sample_sweep.h"
+#include "lab/page/summary.h"
 #include "lab/page/well_formed.h"
 
 namespace meshlode::lab::page {
@@ -133,6 +134,52 @@ TEST(Page, PicturesAreInItOnceAndWithinTheBudget) {
   const std::string small = write_page(data, options);
   EXPECT_EQ(count_of(small, "data:image/png"), 1U) << "the full resolution alone";
   EXPECT_NE(small.find("3 more pictures lie beside this page"), std::string::npos);
+}
+
+Metric metric_of(const char* key, bool is_timed) {
+  Metric metric;
+  metric.key = metric.title = key;
+  metric.is_timed = is_timed;
+  return metric;
+}
+
+Point point_of(const char* label, double bytes, Figure seconds, double deviation, double flip) {
+  Point point;
+  point.id = point.label = label;
+  if (label != std::string("baseline")) point.changed = {label};
+  point.figures = {{"file_bytes", {bytes, bytes, bytes}},
+                   {"build_user_seconds", seconds},
+                   {"deviation", {deviation, deviation, deviation}},
+                   {"flip", {flip, flip, flip}}};
+  return point;
+}
+
+TEST(Summary, ChoosesTheSmallestTheFastestAndTheMostAccurate) {
+  ReportData data;
+  data.metrics = {metric_of("file_bytes", false), metric_of("build_user_seconds", true), metric_of("deviation", false),
+                  metric_of("flip", false)};
+  data.points = {point_of("baseline", 100.0, {2.0, 2.0, 2.0, 1, Figure::Range{1.5, 2.5}}, 1e-4, 500.0),
+                 point_of("small", 90.0, {3.0, 3.0, 3.0, 1, Figure::Range{2.6, 3.4}}, 1e-4, 500.0),
+                 point_of("quick", 100.0, {1.8, 1.8, 1.8, 1, Figure::Range{1.4, 2.2}}, 1e-4, 600.0),
+                 point_of("exact", 100.0, {9.0, 9.0, 9.0, 1, Figure::Range{8.0, 10.0}}, 1.00001e-4, 400.0),
+                 point_of("trial", 1.0, {0.1, 0.1, 0.1, 1, Figure::Range{0.1, 0.1}}, 0.0, 1.0)};
+  data.points.back().is_experimental = true;
+  data.points.push_back(point_of("drawn finer", 100.0, {2.0, 2.0, 2.0, 1, Figure::Range{0.1, 0.2}}, 1e-4, 1.0));
+  data.points.back().changed = {"pixel_error"};
+  const std::vector<Card> cards = choose_cards(data);
+  ASSERT_EQ(cards.size(), 3U);
+  EXPECT_EQ(cards[0].point->label, "small");
+  EXPECT_EQ(cards[1].point->label, "baseline") << "its range meets that of the quickest, and it changes nothing";
+  EXPECT_EQ(cards[1].as_good, std::vector<std::string>{"quick"});
+  EXPECT_EQ(cards[2].point->label, "exact") << "deviations alike to a thousandth: the better picture";
+  EXPECT_TRUE(choose_cards(ReportData{}).empty());
+}
+
+TEST(Summary, IsTheFirstScreenAndTheRestIsFolded) {
+  const std::string page = write_page(made_up());
+  EXPECT_EQ(count_of(page, "<article class=\"card\""), 3U);
+  EXPECT_LT(page.find("id=\"summary\""), page.find("<details class=\"fold\">"));
+  EXPECT_EQ(count_of(page, "<details class=\"fold\">") + 1, count_of(page, "<section id="));
 }
 
 TEST(Page, ScriptAndStylesAreXmlAsTheyStand) {

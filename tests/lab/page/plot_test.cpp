@@ -6,6 +6,7 @@
 #include <limits>
 #include <set>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -151,6 +152,27 @@ TEST(Palette, NamesNoColourThatIsNone) {
     if (name == "at") continue;  // the slider's
     EXPECT_NE(properties.find("--" + name + ":"), std::string::npos) << name;
   }
+}
+
+TEST(Plot, LabelsStandWhereThereIsRoomAndNowhereElse) {
+  Plot plot;
+  plot.id = "labels";
+  Series series;
+  for (const auto& [x, y, label] :
+       {std::tuple(0.0, 0.0, "low"), std::tuple(1.0, 1.0, "high"), std::tuple(0.5, 0.5, "middle")}) {
+    series.points.push_back({x, y, {}, {}, "", "", label});
+  }
+  plot.series = {series};
+  std::string svg = draw_plot(plot, Standing::kInPage);
+  for (const char* label : {">low</text>", ">high</text>", ">middle</text>"})
+    EXPECT_EQ(count_of(svg, label), 1U) << label;
+  // Many points in one place: right, left, above and below of it, and no fifth label.
+  plot.series[0].points.assign(20, {0.5, 0.5, {}, {}, "", "", "same"});
+  plot.series[0].points.push_back({0.0, 0.0, {}, {}, "", "", std::string(100, 'w')});
+  plot.series[0].points.push_back({1.0, 1.0, {}, {}, "", "", ""});
+  svg = draw_plot(plot, Standing::kInPage);
+  EXPECT_EQ(count_of(svg, ">same</text>"), 4U);
+  EXPECT_EQ(count_of(svg, "www"), 0U) << "longer than a third of the plot";
 }
 
 }  // namespace

@@ -223,8 +223,15 @@ struct TestTables {
       r.flags = dag.groups[g].is_terminal ? format::kGroupTerminal : std::uint16_t{0};
       groups.push_back(r);
     }
-    for (const builder::DagCluster& c : dag.clusters) {
+    mesh.sphere_log2 = hierarchy.sphere_log2;
+    for (std::size_t i = 0; i < dag.clusters.size(); ++i) {
+      const builder::DagCluster& c = dag.clusters[i];
+      const builder::Hierarchy::Sphere& sphere = hierarchy.cluster_spheres[i];
       format::ClusterRecord r{};
+      for (int axis = 0; axis < 3; ++axis) {
+        r.center[axis] = static_cast<std::int16_t>(std::ldexp(sphere.center[axis], -mesh.sphere_log2));
+      }
+      r.radius = static_cast<std::uint16_t>(std::ldexp(sphere.radius, -mesh.sphere_log2));
       r.own_group = c.own_group.is_valid() ? mesh.first_group + c.own_group.value : format::kNone;
       r.coarser_group = mesh.first_group + c.coarser_group.value;
       r.level = static_cast<std::uint16_t>(c.level);

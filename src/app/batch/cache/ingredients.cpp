@@ -87,8 +87,8 @@ std::string settings_text(const builder::PipelineOptions& options, const scene::
                uv_error_is_texels, uv_error_is_default, aggregate, aggregate_names, lock_borders] =
       static_cast<const builder::MeshOptions&>(options);
   const auto& [preset, codec, strip_effort, partition_seed, repair, linear_colors, promise, keep_topology, keep_layers,
-               max_cluster_triangles, max_cluster_vertices, group_clusters, max_memory, mesh_store, looks, hooks,
-               mesh_options] = static_cast<const builder::SceneOptions&>(options);
+               max_cluster_triangles, max_cluster_vertices, group_clusters, page_kib, page_order, root_bytes,
+               max_memory, mesh_store, looks, hooks, mesh_options] = static_cast<const builder::SceneOptions&>(options);
   const auto& [import_repair, scene, files_read, max_decoded, may_lack_images, allow_outside, import_linear] = import;
   static_cast<void>(mesh_options);     // not known before the import: mesh_rules_text()
   static_cast<void>(max_memory);       // whether, not what
@@ -120,6 +120,9 @@ std::string settings_text(const builder::PipelineOptions& options, const scene::
       {"cluster-triangles", text_of(std::uint64_t{max_cluster_triangles})},
       {"cluster-vertices", text_of(std::uint64_t{max_cluster_vertices})},
       {"group-clusters", text_of(std::uint64_t{group_clusters})},
+      {"page-size", text_of(std::uint64_t{page_kib})},
+      {"page-order", builder::name_of(page_order)},
+      {"root-bytes", text_of(std::uint64_t{root_bytes})},
       {"study", hooks != nullptr ? hooks->record : "none"},
       {"position-error", text_of(position_error)},
       {"normal-error", text_of(normal_error)},

@@ -30,9 +30,9 @@ std::string describe_decided(const builder::PipelineOptions& options,
   }
   if (is_first) text += "none but positions";
   text += "; aggregates: ";
-  text += aggregates == 0 ? "none" : std::to_string(aggregates) + (aggregates == 1 ? " mesh" : " meshes");
-  return text + " (" + aggregate_word(options) + "); codec " + format::name_of(options.codec) + "; promise " +
-         format::name_of(options.promise);
+  text += aggregates == 0 ? "no mesh" : std::to_string(aggregates) + (aggregates == 1 ? " mesh" : " meshes");
+  return text + " (--aggregate " + aggregate_word(options) + "); codec " + format::name_of(options.codec) +
+         "; promise " + format::name_of(options.promise);
 }
 
 }  // namespace meshlode::app

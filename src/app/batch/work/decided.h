@@ -10,8 +10,8 @@
 
 namespace meshlode::app {
 
-/// "attributes NORMAL, TEXCOORD_0 of some meshes; aggregates: 1 mesh (masked); codec strips; promise position". `plan`
-/// says why.
+/// "attributes NORMAL, TEXCOORD_0 of some meshes; aggregates: 1 mesh (--aggregate masked); codec strips; promise
+/// position". `plan` says why.
 [[nodiscard]] std::string describe_decided(const builder::PipelineOptions& options,
                                            std::span<const builder::PlanDecision> decisions);
 

@@ -275,6 +275,10 @@ class Run {
     pipeline_.mesh_store = nullptr;
     take_report(report);
     if (!bytes) return bytes.error();
+    if (const Result<app::Settled> settled = app::settle(layers_); settled && !result_.decided.empty()) {
+      if (const std::string use = app::describe_use(*settled); !use.empty())
+        result_.decided = use + "; " + result_.decided;
+    }
     if (Status whole = check_whole(result_.facts); !whole) return whole;
     JobFacts facts = result_.facts;
     facts.bytes = bytes->size();

@@ -1,0 +1,256 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Measures the tables of README and docs, and writes them into the pages and, with their origin, into docs/log/results/.
+
+    cmake --preset release -DMESHLODE_BENCH=ON && ninja -C build/release
+    MESHLODE_MODELS=DIR bench/results.py accuracy brackets     # these tables; --list names all; no name: every table
+
+A table lies between `<!-- NAME: begin -->` and `<!-- NAME: end -->` in its page. docs/log/results/TABLE.json has its commit,
+machine, command, the content hashes of its assets, its figures where they are measured here, and a hash of the text in the page.
+tools/release-check compares these with the repository. Tables that another script of bench/ makes are made by that script.
+"""
+import argparse
+import dataclasses
+import datetime
+import hashlib
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+RESULTS = "docs/log/results"
+DATA = ["city", "crystal", "foliage", "rock", "terrain"]
+REAL = ["dragon", "bunny", "FlightHelmet", "fandisk", "rocker-arm", "homer", "spot"]
+MODELS = ["FlightHelmet", "dragon"]
+
+
+@dataclasses.dataclass
+class Table:
+    page: str
+    scenes: list              # whose content hashes are recorded; "data/rock" is data/rock.glb, "rock" a file of MESHLODE_MODELS
+    command: list             # a script of bench/ and its arguments; empty: measured here
+    markers: list = dataclasses.field(default_factory=list)  # of the page; empty: the table's own name
+    prints: bool = False      # the script prints the table; else it writes the page itself
+    minutes: int = 1          # an estimate for --list; the result has what it took
+
+
+ALL_DATA = [f"data/{name}" for name in DATA]
+TOOL, LIBRARY = "build/release/meshlode", "build/release/libmeshlode.so"
+TABLES = {
+    "accuracy": Table("README.md", MODELS, [], minutes=15),
+    "brackets": Table("docs/explanation/errors.md", REAL + ALL_DATA, [], minutes=12),
+    "defaults": Table("docs/log/size.md", ALL_DATA + ["FlightHelmet", "bunny"],
+                      ["bench/size/defaults.py", TOOL, LIBRARY, "MODELS", "data"], prints=True, minutes=2),
+    "gpu-form": Table("docs/log/size.md", REAL, ["bench/size/gpu_form.py", TOOL, "MODELS"], prints=True, minutes=3),
+    "disk-form": Table("docs/log/size.md", ALL_DATA + ["bunny", "spot", "FlightHelmet", "dragon"],
+                       ["bench/size/disk_form.py", TOOL, "MODELS", "data"], prints=True, minutes=3),
+    "plan": Table("docs/log/plan.md", ["FlightHelmet", "dragon"] + ALL_DATA, ["bench/plan/measure.py", TOOL, "MODELS", "data"],
+                  prints=True, minutes=6),
+    "builds": Table("docs/log/build-time.md", REAL[:2] + ALL_DATA, ["bench/build/run.py", "--document"], minutes=60),
+    "measured": Table("docs/log/quality.md", REAL, ["bench/quality/run.py"], minutes=90),
+    "promise": Table("docs/log/quality.md", ["FlightHelmet", "spot"], ["bench/promise/run.py", "--document"], minutes=20),
+    "borders": Table("docs/log/quality.md", ["bunny", "FlightHelmet"], ["bench/borders/run.py", "--document"], minutes=4),
+    "topology": Table("docs/log/numerics.md", ["bunny", "FlightHelmet"], ["bench/topology/run.py", "--document"], minutes=10),
+    "care": Table("docs/log/numerics.md", ["bunny", "FlightHelmet"], ["bench/care/run.py", "--document"], minutes=60),
+    "aggregates": Table("docs/log/aggregates.md", ["data/foliage"], ["bench/aggregate/run.py", "--document"],
+                        ["cuts", "others", "times"], minutes=20),
+}
+# What a table of accuracy has in a row: settings that differ from the defaults, as a sweep names them.
+ROWS = [
+    ("`--preset fast` (errors estimated)", {"preset": "fast"}),
+    ("`--error-tier qem` (errors estimated)", {"error_tier": "qem"}),
+    ("default (errors measured)", {}),
+    ("`--preset best`", {"preset": "best"}),
+    ("`--error-tier certified` (errors proven)", {"error_tier": "certified"}),
+    ("`--promise texels`", {"promise": "texels"}),
+    ("`--promise appearance`", {"promise": "appearance"}),
+]
+SWEEP = ["--knobs", "preset,error-tier,promise", "--rounds", "1", "--samples", "50000"]
+KNOBS = {"preset": "default", "error_tier": "auto", "promise": "position"}
+
+
+def scene_path(name):
+    if name.startswith("data/"):
+        return ROOT / f"{name}.glb"
+    folder = Path(os.environ.get("MESHLODE_MODELS", "."))
+    for path in (folder / f"{name}.glb", folder / name / f"{name}.gltf", folder / name / f"{name}.glb"):
+        if path.is_file():
+            return path
+    raise SystemExit(f"results: {name}: no such model below MESHLODE_MODELS")
+
+
+def run(*command, codes=(0,)):
+    done = subprocess.run([str(part) for part in command], capture_output=True, text=True, cwd=ROOT)
+    if done.returncode not in codes:
+        raise SystemExit(f"results: {' '.join(map(str, command))}: exit code {done.returncode}: {done.stderr}")
+    return done.stdout
+
+
+def meshlode(*command, codes=(0,)):
+    return run(ROOT / TOOL, *command, codes=codes)
+
+
+def content_hash(scene, folder):
+    asset = Path(folder) / "asset.lode"
+    meshlode("build", scene, "-o", asset, "--quiet", "--no-settings-file")
+    return json.loads(meshlode("info", asset, "--format", "json"))["content_hash"]
+
+
+def machine():
+    names = [line.split(":")[1].strip() for line in open("/proc/cpuinfo", encoding="ascii") if line.startswith("model name")]
+    return {"processor": names[0] if names else "unknown", "cores": len(names) or os.cpu_count()}
+
+
+def origin():
+    """The commit, and whether the program may be of something else than that."""
+    changed = run("git", "status", "--porcelain", "--", "src", "include", "tools/meshlode", "cmake", "CMakeLists.txt")
+    return {"commit": run("git", "rev-parse", "HEAD").strip(), "is_changed": bool(changed.strip())}
+
+
+def text_table(header, rows):
+    lines = ["| " + " | ".join(header) + " |", "|" + "|".join([" --- "] + [" ---: "] * (len(header) - 1)) + "|"]
+    return "\n".join(lines + ["| " + " | ".join(row) + " |" for row in rows])
+
+
+def measure_accuracy(scenes, folder):
+    figures = {}
+    for name in scenes:
+        report = Path(folder) / name.replace("/", "-")
+        meshlode("sweep", scene_path(name), "-o", report, *SWEEP, "--quiet")
+        points = json.loads((report / "sweep.json").read_text())["points"]
+        figures[name] = {}
+        for label, changed in ROWS:
+            wanted = {**KNOBS, **changed}
+            found = [p for p in points if p["status"] == "done" and
+                     all(p["settings"].get(knob, value) == value for knob, value in wanted.items())]
+            if not found:
+                continue  # a promise that the scene has nothing for
+            value = {key: one["value"] for key, one in found[0]["figures"].items()}
+            view = next(p for p in found[0]["pictures"] if p["view"] == "near")
+            figures[name][label] = {"content_hash": found[0]["content_hash"], "seconds": value["build_user_seconds"],
+                                    "bytes": value["geometry_bytes"], "equal": value["triangles_at_max"], "drawn": view["triangles"]}
+    return figures
+
+
+def accuracy_text(figures, about):
+    header = ["`meshlode build`"]
+    for name in figures:
+        header += [f"{name}: CPU s", "geometry MB", "equal accuracy", "drawn"]
+    rows = []
+    for label, _ in ROWS:
+        row = [label]
+        for of in figures.values():
+            one = of.get(label)
+            row += ["–"] * 4 if one is None else [f"{one['seconds']:.1f}", f"{one['bytes'] / 1e6:.2f}", f"{one['equal']:,.0f}",
+                                                  f"{one['drawn']:,}"]
+        rows.append(row)
+    return text_table(header, rows) + "\n\nBy `meshlode sweep SCENE -o report " + " ".join(SWEEP) + "`; " + about + "."
+
+
+def measure_brackets(scenes, folder):
+    figures = {}
+    for name in scenes:
+        scene, asset = scene_path(name), Path(folder) / "asset.lode"
+        meshlode("build", scene, "-o", asset, "--quiet", "--no-settings-file")
+        report = json.loads(meshlode("verify", asset, "--source", scene, "--deviation-cuts", "all", "--format", "json", codes=(0, 6)))
+        cuts = report["deviations"]
+        shares = [cut["lower"] / cut["stored"] for cut in cuts if cut["stored"]]
+        figures[name] = {"cuts": len(cuts), "above": sum(s > 1.0 for s in shares), "beyond": sum(s > 1.05 for s in shares),
+                         "undecided": sum(cut["verdict"] == "undecided" for cut in cuts), "largest": max(shares, default=0.0)}
+    return figures
+
+
+def brackets_text(figures, about):
+    rows = [[name, f"{f['cuts']}", f"{f['above']}", f"{f['beyond']}", f"{f['undecided']}", f"{f['largest']:.4f}"]
+            for name, f in figures.items()]
+    return text_table(["model", "cuts", "above the stored error", "above 1.05 of it", "undecided",
+                       "largest lower bound / stored"], rows) + f"\n\nEvery cut; {about}."
+
+
+MEASURED = {"accuracy": (measure_accuracy, accuracy_text), "brackets": (measure_brackets, brackets_text)}
+
+
+def split_page(text, marker):
+    """Before, between and behind a page's markers; None without them."""
+    begin, end = f"<!-- {marker}: begin -->", f"<!-- {marker}: end -->"
+    if text.count(begin) != 1 or text.count(end) != 1:
+        return None
+    first, last = text.index(begin) + len(begin), text.index(end)
+    return text[:first], text[first:last], text[last:]
+
+
+def page_hash(root, name, table):
+    """Of what lies between the markers of a table's page; None where a marker is missing."""
+    text, parts = (Path(root) / table.page).read_text(encoding="utf-8"), []
+    for marker in table.markers or [name]:
+        split = split_page(text, marker)
+        if split is None:
+            return None
+        parts.append(split[1])
+    return hashlib.sha256("".join(parts).encode()).hexdigest()
+
+
+def make(name, table, scenes, folder, out):
+    begin, result = time.monotonic(), {"table": name, "page": table.page, **origin(), "machine": machine()}
+    about = f"commit {result['commit'][:8]}, {result['machine']['cores']} cores of {result['machine']['processor']}"
+    text = None
+    if table.command:
+        script = [os.environ.get("MESHLODE_MODELS", ".") if part == "MODELS" else part for part in table.command]
+        result["command"] = " ".join(table.command)
+        said = run(sys.executable, "-B", *script)
+        text = said.strip() + f"\n\n{about[0].upper()}{about[1:]}." if table.prints else None
+    else:
+        measure, write = MEASURED[name]
+        result["command"] = f"bench/results.py {name}"
+        result["figures"] = measure(scenes, folder)
+        text = write(result["figures"], about)
+    result["assets"] = {scene: content_hash(scene_path(scene), folder) for scene in scenes}
+    result["date"], result["minutes"] = datetime.date.today().isoformat(), round((time.monotonic() - begin) / 60, 1)
+    if out is not None:
+        (out / f"{name}.json").write_text(json.dumps(result, indent=1) + "\n")
+        (out / f"{name}.md").write_text((text or f"in {table.page}") + "\n")
+        return
+    if text is not None:
+        page = ROOT / table.page
+        split = split_page(page.read_text(encoding="utf-8"), name)
+        if split is None:
+            raise SystemExit(f"results: {table.page}: the markers of {name} are missing")
+        page.write_text(f"{split[0]}\n\n{text}\n\n{split[2]}", encoding="utf-8")
+    result["page_sha256"] = page_hash(ROOT, name, table)
+    (ROOT / RESULTS).mkdir(parents=True, exist_ok=True)
+    (ROOT / RESULTS / f"{name}.json").write_text(json.dumps(result, indent=1) + "\n")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("tables", nargs="*", metavar="TABLE")
+    parser.add_argument("--list", action="store_true", help="names, pages and about how many minutes each takes")
+    parser.add_argument("--try", dest="out", type=Path, help="write into this folder and leave pages and results alone")
+    parser.add_argument("--scenes", help="with --try: these scenes alone, comma-separated")
+    options = parser.parse_args()
+    if options.list:
+        for name, table in TABLES.items():
+            print(f"{name:11} {table.minutes:3} min  {table.page}")
+        return
+    unknown = [name for name in options.tables if name not in TABLES]
+    if unknown or (options.scenes and not options.out):
+        parser.error(f"no table is called {unknown[0]}: --list names them" if unknown else "--scenes needs --try")
+    if options.out:
+        options.out = options.out.resolve()
+        options.out.mkdir(parents=True, exist_ok=True)
+        written = [name for name in options.tables or TABLES if TABLES[name].command and not TABLES[name].prints]
+        if written:
+            parser.error(f"{written[0]}: its script writes the page, so that it cannot be tried")
+    for name in options.tables or TABLES:
+        scenes = options.scenes.split(",") if options.scenes else TABLES[name].scenes
+        with tempfile.TemporaryDirectory() as folder:
+            make(name, TABLES[name], scenes, folder, options.out)
+        print(f"results: {name}: done", file=sys.stderr, flush=True)
+
+
+if __name__ == "__main__":
+    main()
