@@ -76,7 +76,7 @@ KNOBS = {"preset": "default", "error_tier": "auto", "promise": "position"}
 def scene_path(name):
     if name.startswith("data/"):
         return ROOT / f"{name}.glb"
-    folder = Path(os.environ.get("MESHLODE_MODELS", "."))
+    folder = Path(os.environ.get("MESHLODE_MODELS", ".")).resolve()
     for path in (folder / f"{name}.glb", folder / name / f"{name}.gltf", folder / name / f"{name}.glb"):
         if path.is_file():
             return path
@@ -107,7 +107,8 @@ def machine():
 
 def origin():
     """The commit, and whether the program may be of something else than that."""
-    changed = run("git", "status", "--porcelain", "--", "src", "include", "tools/meshlode", "cmake", "CMakeLists.txt")
+    changed = run("git", "status", "--porcelain", "--", "src", "include", "tools/meshlode", "cmake", "CMakeLists.txt",
+                  "bench")
     return {"commit": run("git", "rev-parse", "HEAD").strip(), "is_changed": bool(changed.strip())}
 
 
@@ -199,7 +200,7 @@ def make(name, table, scenes, folder, out):
     about = f"commit {result['commit'][:8]}, {result['machine']['cores']} cores of {result['machine']['processor']}"
     text = None
     if table.command:
-        script = [os.environ.get("MESHLODE_MODELS", ".") if part == "MODELS" else part for part in table.command]
+        script = [str(Path(os.environ.get("MESHLODE_MODELS", ".")).resolve()) if part == "MODELS" else part for part in table.command]
         result["command"] = " ".join(table.command)
         said = run(sys.executable, "-B", *script)
         text = said.strip() + f"\n\n{about[0].upper()}{about[1:]}." if table.prints else None

@@ -343,7 +343,7 @@ MESHLODE_API meshlode_status meshlode_choose_promise(meshlode_asset* asset, uint
 /** Where the scene is seen from. The rule looks at distances only: a view direction plays no part, and nothing is
  * culled but by a meshlode_frustum. */
 typedef struct meshlode_view {
-  double eye[3];        /**< world space; unused if orthographic */
+  double eye[3];        /**< world space, finite; if orthographic, only a frustum made of it uses it */
   int is_orthographic;  /**< 0: perspective */
   double fovy_radians;  /**< full vertical angle, in (0, pi); perspective only */
   double ortho_height;  /**< world units across the height of the picture, above 0; orthographic only */

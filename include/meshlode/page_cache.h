@@ -7,6 +7,8 @@
  * wanted, meshlode_page_cache_begin names a page to load and the slot for it; when its bytes are there,
  * meshlode_page_cache_end makes it resident. `resident` is what the next selection takes.
  *
+ * A slot needs the bytes of the asset's largest page: a large group has a page larger than the rest.
+ *
  * A page makes room only for one of higher priority. Of several of the same priority the one goes that was not wanted
  * for the longest time.
  *
@@ -115,13 +117,14 @@ static inline int meshlode_page_cache_begin(meshlode_page_cache* cache, uint32_t
 }
 
 /** The load of a page ended. With `is_loaded` the page is resident from here on; else its slot is free, and the page
- * may be asked for again. */
+ * is not asked for again before the next update. */
 static inline void meshlode_page_cache_end(meshlode_page_cache* cache, uint32_t page, int is_loaded) {
   if (is_loaded) {
     cache->resident[page / 32] |= 1u << page % 32;
   } else {
     cache->page_of_slot[cache->slot_of_page[page]] = MESHLODE_NONE;
     cache->slot_of_page[page] = MESHLODE_NONE;
+    cache->priorities[page] = 0.0f;
   }
 }
 

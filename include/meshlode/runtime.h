@@ -45,8 +45,9 @@ namespace meshlode {
 /// Where the scene is seen from. The rule looks at distances only: a view direction plays no part, and nothing is
 /// culled but by a Frustum.
 struct View {
-  std::array<double, 3> eye{0.0, 0.0, 0.0};   ///< world space; unused if orthographic
-  bool is_orthographic = false;               ///< else perspective
+  std::array<double, 3> eye{0.0, 0.0,
+                            0.0};  ///< world space, finite; if orthographic, only a frustum made of it uses it
+  bool is_orthographic = false;    ///< else perspective
   double fovy_radians = 0.78539816339744831;  ///< full vertical angle, in (0, pi); perspective only
   double ortho_height = 1.0;                  ///< world units across the picture's height, above 0; orthographic only
   double near_distance = 1e-3;                ///< world units, above 0: nearer surfaces count as this far

@@ -96,6 +96,23 @@ TEST(PageCache, TablesAgreeAndRoomIsMadeForWhatMattersMore) {
   }
 }
 
+TEST(PageCache, APageThatFailsIsAskedForOnceAnUpdate) {
+  Pool pool(18, 6);
+  for (int update = 0; update < 3; ++update) {
+    const std::vector<float> priorities(18, 1.0F);
+    meshlode_page_cache_update(&pool.cache, priorities.data());
+    std::uint32_t page = 0, slot = 0, failures = 0, calls = 0;
+    while (meshlode_page_cache_begin(&pool.cache, &page, &slot) != 0) {
+      failures += page == 0 ? 1 : 0;
+      meshlode_page_cache_end(&pool.cache, page, page == 0 ? 0 : 1);
+      pool.expect_agrees();
+      ASSERT_LE(++calls, 18U);
+    }
+    EXPECT_EQ(failures, update == 0 ? 1U : 0U);  // then the pool is full of pages that are as important
+    EXPECT_EQ(meshlode_page_cache_has(&pool.cache, 1), 1);
+  }
+}
+
 TEST(PageCache, TheMostImportantPagesAreThereInTheEnd) {
   test::RandomSource random(502);
   for (int n = 0; n < 200; ++n) {

@@ -83,7 +83,9 @@ std::string row_of(const BulkVerb& verb, const BulkInput& input, const FileOutco
   }
   const std::string name = plain_line(shown_name(input));
   row += "  " + shortened(name, static_cast<std::size_t>(std::max(kLeastName, kLineWidth - used - 2))) + "\n";
-  for (const std::string& line : outcome.details) row += "  " + name + ": " + plain_line(line) + "\n";
+  // A line that begins with two colons is a command to some CI systems.
+  const std::string shown = name.starts_with("::") ? "./" + name : name;
+  for (const std::string& line : outcome.details) row += "  " + shown + ": " + plain_line(line) + "\n";
   return row;
 }
 
@@ -249,9 +251,10 @@ Result<BulkInputs> find_bulk_inputs(const Verb& verb, const BulkWords& words, ap
     return Error{ErrorCode::kIo, words.manifest.empty() ? words.files.front() : words.manifest,
                  kind == app::InputKind::kScenes ? "no scene in it" : "no asset in it"};
   }
+  if (inputs.is_single && words.junit.empty()) return inputs;
   if (inputs.is_single) {
-    if (!words.junit.empty()) inputs.is_single = false;  // its rows beside it
-    return inputs;
+    inputs.is_single = false;  // its rows beside it
+    if (inputs.files.front().path == kStream) return inputs;
   }
   for (const BulkInput& input : inputs.files) {
     if (input.path == kStream) return Error{ErrorCode::kUsage, "", "stdin is one file: give it alone"};

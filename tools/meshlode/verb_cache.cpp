@@ -121,15 +121,16 @@ int run_cache(const Verb& verb, std::span<char* const> args) {
   }
   const auto looked_at = app::Store::open(report.folder, {0, true});
   if (!looked_at) return print_error(looked_at.error());
-  const bool is_changed = words.trim || words.clear || words.verify;
+  const bool is_changed = (words.trim || words.clear || words.verify) &&
+                          !std::filesystem::is_empty(report.folder, error);  // which would become a cache
   const auto store = app::Store::open(report.folder, {0, !is_changed});
   if (!store) return print_error(store.error());
-  if (words.trim || words.clear) {
+  if (is_changed && !words.verify) {
     const auto removed = store->trim_to(limit);
     if (!removed) return print_error(removed.error());
     report.removed = *removed;
   }
-  if (words.verify) report.check = store->check();
+  if (is_changed && words.verify) report.check = store->check();
   report.counts = store->count();
   const bool is_silent = words.out.quiet && !words.out.json();
   const bool is_broken = report.check && report.check->broken.entries > 0;

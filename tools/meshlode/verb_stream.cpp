@@ -185,7 +185,8 @@ void add_options(OptionParser& parser, StreamWords& words) {
   add_output_options(parser, words.output);
   parser.add_value("-o,--output FILE", words.output_file, "write the report there (default: stdout)");
   parser.add_value("--plot FILE", words.plot, "an SVG of the largest error in each frame (default: none)");
-  parser.add_flag("--log", words.has_log, "with --format json: errors of frames, requests and sizes of pages too");
+  parser.add_flag("--log", words.has_log,
+                  "with --format json: errors and drawn pages of frames, requests and sizes of pages too");
   parser.group("Resources");
   add_jobs_option(parser, words.jobs);
   add_max_decoded_option(parser, words.max_decoded);

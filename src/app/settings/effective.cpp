@@ -31,7 +31,8 @@ void write_setting(JsonWriter& json, const SettingInfo& info, const std::string&
   double number = 0.0;
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
   const bool is_number = error == std::errc{} && end == word.data() + word.size() && std::isfinite(number);
-  if (is_number && takes_number(info.setting)) return json.value(number);
+  const bool is_name = info.setting == Setting::kAggregate;  // of a mesh
+  if (is_number && !is_name && takes_number(info.setting)) return json.value(number);
   json.value(word);
 }
 

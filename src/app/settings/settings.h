@@ -63,9 +63,9 @@ struct SettingInfo {
 [[nodiscard]] bool is_flag(Setting setting);
 /// Names between commas.
 [[nodiscard]] bool is_list(Setting setting);
-/// Of one with choices: where these are numbers.
-[[nodiscard]] bool takes_number(Setting setting);
 [[nodiscard]] std::optional<Setting> setting_of(std::string_view name);
+/// Whether a file may say it as a number: where there are no choices, and where these are numbers.
+[[nodiscard]] bool takes_number(Setting setting);
 /// The words that a setting may be; none where it is a number.
 [[nodiscard]] std::vector<std::string> choices_of(Setting setting);
 

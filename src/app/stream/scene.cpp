@@ -153,16 +153,20 @@ Result<std::vector<Placement>> parse_placements(std::string_view text, const std
   while (const auto line = lines.next()) {
     const std::string place_of_line = where + ", line " + std::to_string(lines.number());
     const std::vector<std::string_view> words = split_words(*line, " \t");
-    if (words.size() != 6) {
+    if (words.size() < 6) {
       return Error{ErrorCode::kInvalid, place_of_line, "expected asset x y z yaw scale" + got_text(*line)};
     }
     if (out.size() == kMostInstances) return Error{ErrorCode::kInvalid, place_of_line, "is the 65,537th placement"};
-    TRY_LET(asset, find_asset(words[0], names, place_of_line));
+    const std::size_t first = words.size() - 5;  // of the numbers: a name may have blanks
+    const char* const end_of_name = words[first - 1].data() + words[first - 1].size();
+    const std::string_view name(words[0].data(), static_cast<std::size_t>(end_of_name - words[0].data()));
+    TRY_LET(asset, find_asset(name, names, place_of_line));
     double numbers[5];
     for (std::size_t i = 0; i < 5; ++i) {
-      const auto number = parse_number(words[i + 1]);
+      const auto number = parse_number(words[first + i]);
       if (!number) {
-        return Error{ErrorCode::kInvalid, place_of_line, "expected a number of at most 1e15" + got_text(words[i + 1])};
+        return Error{ErrorCode::kInvalid, place_of_line,
+                     "expected a number of at most 1e15" + got_text(words[first + i])};
       }
       numbers[i] = *number;
     }

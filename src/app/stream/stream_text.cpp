@@ -77,7 +77,7 @@ std::string stream_text(const StreamReport& report) {
   std::size_t jumps = 0;
   for (const PathFrame& frame : report.frames) jumps += frame.is_jump ? 1 : 0;
   out += report.path;
-  append_format(out, ": %zu frames, %zu cuts\n", report.frames.size(), jumps - 1);
+  out += ": " + plural(report.frames.size(), "frame") + ", " + plural(jumps - 1, "cut") + "\n";
   append_format(out, "picture        %ux%u at %.4g px, %u frames a second\n", report.view.width, report.view.height,
                 asked, report.view.fps);
   append_format(out, "working set    %.2f MB a frame, at most %.2f MB (%.1f%% of all)\n", to_mb(demand.mean_bytes),

@@ -5,7 +5,9 @@
 #include <meshlode/meshlode.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <cstring>
 #include <new>
 #include <string>
@@ -85,7 +87,9 @@ inline bool is_aligned(const void* memory) {
 inline meshlode_status read_view(const meshlode_view& view, double pixel_error, Camera& camera, meshlode_error* error) {
   const ViewFault fault = fault_of_view(view);
   if (fault.field != nullptr) {
-    return fail(error, MESHLODE_USAGE, (std::string("view->") + fault.field + " " + fault.detail).c_str());
+    std::array<char, 96> text{};  // no memory is taken: nothing is thrown at a C caller
+    std::snprintf(text.data(), text.size(), "view->%s %s", fault.field, fault.detail);
+    return fail(error, MESHLODE_USAGE, text.data());
   }
   if (!(pixel_error >= 0.0) || !std::isfinite(pixel_error)) {
     return fail(error, MESHLODE_USAGE, "pixel_error is not a number >= 0");

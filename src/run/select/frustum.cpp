@@ -62,8 +62,13 @@ MeshFrustum frustum_of_mesh(const Frustum* frustum, const format::InstanceRecord
     translation[i] = ((row[0] * o[0] + row[1] * o[1]) + row[2] * o[2]) + row[3];
   }
   for (std::uint32_t k = 0; k < out.planes.size(); ++k) {
-    const auto& [a, b, c, d] = frustum->planes[k];
+    auto [a, b, c, d] = frustum->planes[k];
     if (a == 0.0 && b == 0.0 && c == 0.0 && d == 0.0) continue;
+    const double largest = std::max({std::abs(a), std::abs(b), std::abs(c)});
+    if (largest > 0.0 && std::isfinite(largest)) {  // a power of two is exact, and no square over- or underflows
+      const int e = -std::ilogb(largest);
+      a = std::ldexp(a, e), b = std::ldexp(b, e), c = std::ldexp(c, e), d = std::ldexp(d, e);
+    }
     MeshFrustum::Plane& plane = out.planes[k];
     for (int i = 0; i < 3; ++i) plane.normal[i] = (a * m[i] + b * m[4 + i]) + c * m[8 + i];
     const double* n = plane.normal;

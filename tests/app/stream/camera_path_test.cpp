@@ -76,14 +76,17 @@ TEST(CameraPath, APathOfTooManyFramesIsRefused) {
 }
 
 TEST(Placements, NameAnAssetByItsPathOrItsFileName) {
-  const std::vector<std::string> names{"a/tree.lode", "b/rock.lode", "c/rock.lode"};
-  const auto placed = parse_placements("tree.lode 1 2 3 90 2\n\tc/rock.lode\t0 0 0 0 1 # one\n", "s", names);
+  const std::vector<std::string> names{"a/tree.lode", "b/rock.lode", "c/rock.lode", "my tree.lode"};
+  const auto placed =
+      parse_placements("tree.lode 1 2 3 90 2\n\tc/rock.lode\t0 0 0 0 1 # one\nmy tree.lode 0 0 0 5 1", "s", names);
   ASSERT_TRUE(placed) << placed.error().message();
-  ASSERT_EQ(placed->size(), 2U);
+  ASSERT_EQ(placed->size(), 3U);
   EXPECT_EQ((*placed)[0].asset, 0U);
   EXPECT_EQ((*placed)[0].position.z, 3.0);
   EXPECT_EQ((*placed)[0].yaw_degrees, 90.0);
   EXPECT_EQ((*placed)[1].asset, 2U);
+  EXPECT_EQ((*placed)[2].asset, 3U);
+  EXPECT_EQ((*placed)[2].yaw_degrees, 5.0);
 
   const auto expect_error = [&](const std::string& text, const char* place) {
     const auto bad = parse_placements(text, "s", names);

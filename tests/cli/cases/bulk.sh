@@ -61,6 +61,8 @@ printf 'no asset' >'out/<img src=x onerror=1>&".lode'
 run validate out --junit out/v.xml
 sed 's/time="[0-9.]*"/time="T"/g' out/v.xml
 run validate out/a.lode --junit out/a.lode
+cp out/a.lode asset.xml; run validate asset.xml --junit asset.xml; cmp out/a.lode asset.xml
+(cd out && cp bad.lode ::error.lode && "$MESHLODE" validate '*.lode' | grep -c '^  \./::error'; rm ::error.lode)
 run verify out/a.lode --source in/a.glb --quick --junit verify.xml --quiet
 grep -c '<testcase' verify.xml
 echo "two folders"

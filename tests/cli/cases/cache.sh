@@ -71,7 +71,13 @@ ls -A own; "$MESHLODE" build -q told/a.glb -O told/out --preset fast --cache own
 mkdir other; touch other/file
 run cache other --clear
 run cache none --clear
-mkdir nothing; run cache nothing --stats --quiet; ls -A other nothing
+mkdir nothing; run cache nothing --stats --quiet; run cache nothing --clear --quiet; ls -A other nothing
+# Another program's cache is not ours, and no link leads out of one.
+entry=0123456789abcdef0123456789abcd
+mkdir -p foreign/asset/ab beside; echo 'Signature: 8a477f597d28d172789f06886806bc55' >foreign/CACHEDIR.TAG
+touch foreign/asset/ab/$entry beside/$entry
+run cache foreign --clear; ls foreign/asset/ab
+ln -s "$PWD/beside" own/asset/ff; run cache own --verify --quiet; run cache own --clear --quiet; ls beside; rm own/asset/ff
 run cache own --clear --verify
 run cache own --trim much
 run cache

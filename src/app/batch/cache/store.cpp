@@ -73,11 +73,19 @@ bool is_hex(std::string_view name, std::size_t digits) {
 }
 
 /// Whether a folder holds nothing, or nothing but what a cache that is just being made holds.
+/// The tag of another program's cache is none.
+bool has_tag(const fs::path& folder) {
+  const auto file = MappedFile::open(folder / kTagName);
+  return file &&
+         std::ranges::equal(file->bytes(), kTagText, {}, {}, [](char c) { return static_cast<std::uint8_t>(c); });
+}
+
 bool may_become_store(const fs::path& folder) {
   std::error_code error;
   for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
     const std::string name = it->path().filename().string();
-    if (name != kTagName && !(name.starts_with(".meshlode-") && name.ends_with(".tmp"))) return false;
+    if (name == kTagName && has_tag(folder)) continue;
+    if (!(name.starts_with(".meshlode-") && name.ends_with(".tmp"))) return false;
   }
   return !error;
 }
@@ -93,11 +101,17 @@ struct StoredFile {
   }
 };
 
-/// All entries of one kind. Only what has an entry's name is one.
+bool is_own_folder(const fs::path& folder) {
+  std::error_code error;
+  return fs::is_directory(fs::symlink_status(folder, error));
+}
+
+/// All entries of one kind. Only what has an entry's name is one, and no link leads to it.
 void list_entries(const fs::path& folder, std::vector<StoredFile>& files) {
   std::error_code error;
+  if (!is_own_folder(folder)) return;
   for (fs::directory_iterator shard(folder, error), end; !error && shard != end; shard.increment(error)) {
-    if (!is_hex(shard->path().filename().native(), 2)) continue;
+    if (!is_hex(shard->path().filename().native(), 2) || !is_own_folder(shard->path())) continue;
     static_cast<void>(OutputFiles().claim(shard->path() / "swept"));  // removes what killed writers left
     std::error_code inner;
     for (fs::directory_iterator it(shard->path(), inner), last; !inner && it != last; it.increment(inner)) {
@@ -127,9 +141,9 @@ Result<Store> Store::open(const fs::path& folder, const StoreOptions& options) {
   if (error) return Error{ErrorCode::kIo, folder.string(), error.message()};
   if (options.is_read_only && !fs::exists(folder, error)) return Store(folder, options);
   if (!fs::is_directory(folder, error)) return Error{ErrorCode::kUsage, folder.string(), "the cache is not a folder"};
-  if (fs::exists(folder / kTagName, error)) return Store(folder, options);
+  if (has_tag(folder)) return Store(folder, options);
   // The tag is looked for again: somebody else may have made it, and the first entries with it, in the meantime.
-  if (!may_become_store(folder) && !fs::exists(folder / kTagName, error)) {
+  if (!may_become_store(folder) && !has_tag(folder)) {
     return Error{ErrorCode::kUsage, folder.string(), "holds other files and is not a cache; name a folder of its own"};
   }
   if (options.is_read_only) return Store(folder, options);

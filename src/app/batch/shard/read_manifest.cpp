@@ -104,11 +104,14 @@ Dependency read_file(Members& in, const Json& json) {
   return file;
 }
 
+constexpr double kMostSeconds = 1e12;  ///< 30,000 years: what a page writes with its digits
+
 double read_seconds(Members& in, const Json& json, const char* key) {
   const Json* seconds = json.find(key);
   const auto number = seconds != nullptr ? seconds->number() : std::nullopt;
-  if (!number) in.refuse(key, "no number");
-  return number.value_or(0.0);
+  const bool is_time = number && *number >= 0.0 && *number <= kMostSeconds;
+  if (!is_time) in.refuse(key, "no number of seconds");
+  return is_time ? *number : 0.0;
 }
 
 /// What version 1 has not.
@@ -136,6 +139,9 @@ JobResult read_result(Members& in, const Json& json, std::uint64_t version) {
   JobResult r;
   r.job.input = in.text(json, "input");
   r.job.output = in.text(json, "output");
+  for (const auto& [key, path] : {std::pair{"input", &r.job.input}, std::pair{"output", &r.job.output}}) {
+    if (path->empty() || path->native().find('\0') != std::string::npos) in.refuse(key, "no path");
+  }
   const auto status = value_in(kJobStatusNames, in.text(json, "status"));
   if (!status || *status == JobStatus::kWouldBuild || *status == JobStatus::kWouldCopy) {
     in.refuse("status", "no status of a batch");
