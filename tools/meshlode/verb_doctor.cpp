@@ -18,6 +18,7 @@
 #include "doctor_advice.h"
 #include "doctor_words.h"
 #include "options.h"
+#include "outputs.h"
 #include "run/read/asset.h"
 #include "scene/import/import.h"
 #include "streams.h"
@@ -55,7 +56,12 @@ Result<app::DoctorReport> examine_asset(const std::string& path, std::uint64_t m
 Result<app::DoctorReport> examine(const std::string& path, const scene::ImportOptions& options, Status& sound) {
   TRY_LET(asset, is_asset(path));
   if (*asset) return examine_asset(path, options.max_decoded, sound);
-  TRY_LET(scene, scene::import_scene(path, options));
+  std::vector<FileId> files_read;
+  scene::ImportOptions noted = options;
+  noted.files_read = &files_read;
+  const Result<scene::Scene> scene = scene::import_scene(path, noted);
+  output_files().keep(files_read);
+  if (!scene) return scene.error();
   app::DoctorReport report = report_on_scene(*scene);
   add_advice(*scene, report.diagnoses);
   app::rank(report.diagnoses);

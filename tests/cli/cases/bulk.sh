@@ -61,6 +61,10 @@ printf 'no asset' >'out/<img src=x onerror=1>&".lode'
 run validate out --junit out/v.xml
 sed 's/time="[0-9.]*"/time="T"/g' out/v.xml
 run validate out/a.lode --junit out/a.lode
+# Nor a file that a scene refers to.
+printf '{"asset":{"version":"2.0"},"buffers":[{"byteLength":36,"uri":"buffer.xml"}],"bufferViews":[{"buffer":0,"byteLength":36}],"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]}],"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"nodes":[{"mesh":0}],"scenes":[{"nodes":[0]}],"scene":0}' >x.gltf
+printf '\0\0\0\0\0\0\0\0\0\0\0\0\0\0\200\077\0\0\0\0\0\0\0\0\0\0\0\0\0\0\200\077\0\0\0\0' >buffer.xml; cp buffer.xml same.bin
+for verb in doctor plan; do code $verb x.gltf --junit buffer.xml; cmp buffer.xml same.bin; done
 cp out/a.lode asset.xml; run validate asset.xml --junit asset.xml; cmp out/a.lode asset.xml
 (cd out && cp bad.lode ::error.lode && "$MESHLODE" validate '*.lode' | grep -c '^  \./::error'; rm ::error.lode)
 run verify out/a.lode --source in/a.glb --quick --junit verify.xml --quiet
