@@ -341,6 +341,10 @@ int run_verify(const Verb& verb, std::span<char* const> args) {
                         "of several assets name the folder of their scenes, or give "
                         "--manifest"});
   }
+  if (has_all_sources && !source_options.path.empty()) {
+    return print_error(
+        {ErrorCode::kUsage, "--source", "the manifest names the scene of each asset; give one of the two"});
+  }
   return run_bulk({"verify",
                    {{"checks", 6}, {"failed", 6}, {"findings", 8}},
                    [&](const BulkInput& input) { return verify_file(input, command); }},

@@ -10,6 +10,7 @@ code build -q in -O out --preset fast --error-tier qem --manifest out/manifest.j
 same() { "$MESHLODE" "$@" --jobs 1 >one.txt 2>&1; "$MESHLODE" "$@" --jobs 7 >seven.txt 2>&1; cmp one.txt seven.txt; rm one.txt seven.txt; }
 run verify --manifest out/manifest.json --quick
 same verify --manifest out/manifest.json --quick
+run verify --manifest out/manifest.json --source in --quick
 run verify out --source in --quick
 run verify out/a.lode out/deep/b.lode --source in --quick
 run verify 'out/**/*.lode' --source in --quick --quiet
