@@ -52,8 +52,10 @@ void add_run(std::string& out, const RunSpec& spec, const RunResult& run) {
 
 void add_findings(std::string& out, const std::string& where, const std::vector<std::string>& findings,
                   std::uint64_t count) {
-  for (const std::string& text : findings) out += "finding: " + where + text + "\n";
-  if (count > findings.size()) out += "finding: " + where + std::to_string(count - findings.size()) + " more\n";
+  for (const std::string& text : findings) append_format(out, "finding: %s%s\n", where.c_str(), text.c_str());
+  if (count > findings.size()) {
+    append_format(out, "finding: %s%s more\n", where.c_str(), std::to_string(count - findings.size()).c_str());
+  }
 }
 
 }  // namespace
