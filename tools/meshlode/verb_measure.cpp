@@ -22,7 +22,7 @@ namespace meshlode::cli {
 
 namespace {
 
-struct MeasureOptions {
+struct MeasureWords {
   std::string input, tier = "measured";
   std::optional<std::string> output;
   SourceOptions source;
@@ -31,7 +31,7 @@ struct MeasureOptions {
   OutputOptions out;
 };
 
-std::string describe(const MeasureOptions& o, const run::Asset& measured) {
+std::string describe(const MeasureWords& o, const run::Asset& measured) {
   const std::string hash = to_hex(run::stated_hash(measured));
   if (!o.out.json()) {
     return o.input + " -> " + *o.output + ", " + o.tier + ", content " + hash + "\n";
@@ -50,7 +50,7 @@ std::string describe(const MeasureOptions& o, const run::Asset& measured) {
 }
 
 int run_measure(const Verb& verb, std::span<char* const> args) {
-  MeasureOptions o;
+  MeasureWords o;
   OptionParser parser(verb);
   parser.add_positional("FILE", o.input, "a .lode asset");
   parser.group("Output");

@@ -19,12 +19,12 @@ namespace meshlode::builder {
 namespace {
 
 /// Clusters of the DAG as one surface, off the grid. Positions are in the order of their ids.
-struct ClusterSurface {
+struct SearchedCluster {
   std::vector<Vec3d> positions;
   std::vector<std::array<std::uint32_t, 3>> triangles;
 
-  ClusterSurface(const PreparedMesh& mesh, const LodDag& dag, std::span<const std::uint32_t> position_of_vertex,
-                 std::span<const std::uint32_t> clusters) {
+  SearchedCluster(const PreparedMesh& mesh, const LodDag& dag, std::span<const std::uint32_t> position_of_vertex,
+                  std::span<const std::uint32_t> clusters) {
     std::size_t count = 0;
     for (const std::uint32_t c : clusters) count += dag.clusters[c].triangle_count;
     triangles.reserve(count);
@@ -80,7 +80,7 @@ class Certifier {
   }
 
  private:
-  [[nodiscard]] ClusterSurface surface_of(std::span<const std::uint32_t> clusters) const {
+  [[nodiscard]] SearchedCluster surface_of(std::span<const std::uint32_t> clusters) const {
     return {mesh_, dag_, form_.position_of_vertex, clusters};
   }
 
@@ -93,7 +93,7 @@ class Certifier {
       const GroupId own = dag_.clusters[members[i]].own_group;
       if (own.is_valid()) floor = std::max(floor, dag_.groups[own.value].error);
     }
-    const ClusterSurface before = surface_of(members), after = surface_of(made_of_[id]);
+    const SearchedCluster before = surface_of(members), after = surface_of(made_of_[id]);
     const std::span<const TriangleBound> known =
         std::span(bounds_).subspan(dag_.clusters[members.front()].first_triangle, before.triangles.size());
     const CertifiedGroup certified = certify_group(before.surface(), known, after.surface());
