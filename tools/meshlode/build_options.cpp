@@ -52,10 +52,4 @@ Result<std::vector<app::SettingLayer>> settings_for(const BuildWords& words, con
   return layers;
 }
 
-std::vector<std::string> names_of_meshes(const scene::Scene& scene) {
-  std::vector<std::string> names;
-  for (const scene::SourceMesh& mesh : scene.meshes) names.push_back(mesh.name);
-  return names;
-}
-
 }  // namespace meshlode::cli

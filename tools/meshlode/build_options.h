@@ -33,6 +33,4 @@ void add_build_options(OptionParser& parser, BuildWords& words);
                                                                   const std::filesystem::path& scene,
                                                                   const std::filesystem::path& root);
 
-[[nodiscard]] std::vector<std::string> names_of_meshes(const scene::Scene& scene);
-
 }  // namespace meshlode::cli

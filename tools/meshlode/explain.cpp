@@ -51,7 +51,7 @@ std::string describe_settings(const app::Settled& settled, const std::vector<app
 Result<std::string> explain_build(const std::vector<app::SettingLayer>& layers, const builder::PipelineOptions& options,
                                   const scene::Scene& scene) {
   TRY_LET(settled, app::settle(layers));
-  TRY_LET(meshes, app::settle_meshes(layers, names_of_meshes(scene)));
+  TRY_LET(meshes, app::settle_meshes(layers, app::names_of_meshes(scene)));
   TRY_LET(plan, app::plan_scene(scene, options));
   return describe_settings(*settled, *meshes, scene) + app::describe_plan(*plan);
 }

@@ -159,7 +159,7 @@ FileOutcome plan_file(const BulkInput& input, const PlanCommand& command, JobLim
   output_files().keep(files_read);
   const Status free = command.is_single ? claim_plan(command) : Status(Ok{});
   if (!free) return fail(free.error());
-  auto meshes = app::settle_meshes(*layers, names_of_meshes(*scene));
+  auto meshes = app::settle_meshes(*layers, app::names_of_meshes(*scene));
   if (!meshes) return fail_in(meshes.error());
   for (const app::SettledMesh& mesh : *meshes) options.mesh_options.push_back(mesh.options);
   Result<app::ScenePlan> plan = app::plan_scene(*scene, options);

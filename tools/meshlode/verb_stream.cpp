@@ -28,8 +28,8 @@ namespace {
 
 struct StreamWords {
   std::vector<std::string> assets;
-  std::optional<std::string> scene, path;
-  std::string builtin = "fly", size = "1920x1080", pool = "all,1/2,1/4", bandwidth = "10,50,200", latency = "5";
+  std::optional<std::string> scene, path, builtin;
+  std::string size = "1920x1080", pool = "all,1/2,1/4", bandwidth = "10,50,200", latency = "5";
   double pixel_error = 1.0;
   std::optional<double> near_distance;
   std::uint32_t fps = 60, jobs = 0;
@@ -94,7 +94,8 @@ Result<std::vector<double>> parse_amounts(const char* option, const std::string&
 /// All pools over all links, in the order of the words.
 Result<std::vector<app::RunSpec>> make_specs(const StreamWords& words, std::uint64_t all_bytes) {
   TRY_LET(pools, parse_pools(words.pool, all_bytes));
-  TRY_LET(bandwidths, parse_amounts("--bandwidth", words.bandwidth, 1e-3, 1e6, "megabytes a second, 0.001 to 1000000"));
+  TRY_LET(bandwidths,
+          parse_amounts("--bandwidth", words.bandwidth, 1e-3, 1e6, "megabytes per second, 0.001 to 1000000"));
   TRY_LET(latencies, parse_amounts("--latency", words.latency, 0.0, 60000.0, "milliseconds, 0 to 60000"));
   std::vector<app::RunSpec> specs;
   if (pools->size() * bandwidths->size() * latencies->size() > kMostRuns) {
@@ -127,15 +128,15 @@ Result<app::StreamView> make_view(const StreamWords& words) {
 }
 
 Result<app::StreamScene> read_scene(const StreamWords& words, std::uint64_t max_decoded) {
-  std::set<std::string> seen;
-  for (const std::string& name : words.assets) {
-    if (!seen.insert(name).second) return Error{ErrorCode::kUsage, name, "is given twice; --scene places it often"};
-  }
+  std::set<FileId> seen;
   std::vector<run::Asset> assets;
   std::vector<app::Placement> placements;
   for (const std::string& name : words.assets) {
     TRY_LET(asset, open_asset(name, max_decoded));
-    if (const auto id = asset->file_id()) output_files().keep(*id);
+    if (const auto id = asset->file_id()) {
+      output_files().keep(*id);
+      if (!seen.insert(*id).second) return Error{ErrorCode::kUsage, name, "is given twice; --scene places it often"};
+    }
     placements.push_back({static_cast<std::uint32_t>(assets.size()), {}, 0.0, 1.0});
     assets.push_back(std::move(*asset));
   }
@@ -149,9 +150,13 @@ Result<app::StreamScene> read_scene(const StreamWords& words, std::uint64_t max_
   return Error{scene.error().code, words.scene ? *words.scene : words.assets.front(), scene.error().detail};
 }
 
+std::string builtin_of(const StreamWords& words) {
+  return words.builtin.value_or("fly");
+}
+
 Result<std::vector<app::PathFrame>> read_path(const StreamWords& words, const app::StreamScene& scene) {
   if (!words.path) {
-    const auto builtin = value_in(app::kBuiltinPathNames, words.builtin).value_or(app::BuiltinPath::kFly);
+    const auto builtin = value_in(app::kBuiltinPathNames, builtin_of(words)).value_or(app::BuiltinPath::kFly);
     return app::sample_path(app::builtin_path(builtin, scene), words.fps, "--builtin");
   }
   TRY_LET(text, read_text_file("--path", *words.path));
@@ -164,7 +169,8 @@ void add_options(OptionParser& parser, StreamWords& words) {
   parser.group("Scene and camera");
   parser.add_value("--scene FILE", words.scene,
                    "lines 'asset x y z yaw scale' that place the assets; yaw in degrees (default: each once)");
-  parser.add_value("--builtin", words.builtin, "path through the scene", all_names(app::kBuiltinPathNames));
+  parser.add_value("--builtin", words.builtin, "path through the scene (default: fly)",
+                   all_names(app::kBuiltinPathNames));
   parser.add_value(
       "--path FILE", words.path,
       "path as lines 't,ex,ey,ez,tx,ty,tz[,fovy][,cut]': seconds, eye, target, degrees (default: --builtin)");
@@ -172,12 +178,12 @@ void add_options(OptionParser& parser, StreamWords& words) {
   parser.add_value("--pixel-error T", words.pixel_error, "allowed error on the screen in pixels, 0.001 to 1000000");
   parser.add_value("--near D", words.near_distance,
                    "near distance of the camera in world units, above 0 (default: 0.01 radii of the largest object)");
-  parser.add_value("--fps N", words.fps, "frames a second, 1 to 1000");
+  parser.add_value("--fps N", words.fps, "frames per second, 1 to 1000");
   parser.group("Streaming");
   parser.add_value(
       "--pool LIST", words.pool,
       "room for decoded pages: all, megabytes (10^6 bytes), or a share of all pages as 1/4; comma-separated");
-  parser.add_value("--bandwidth LIST", words.bandwidth, "of the link, in megabytes a second; comma-separated");
+  parser.add_value("--bandwidth LIST", words.bandwidth, "of the link, in megabytes per second; comma-separated");
   parser.add_value("--latency LIST", words.latency, "of a request, in milliseconds; comma-separated");
   parser.add_flag("--check", words.is_checked,
                   "hold each frame's cut against its definition; findings are printed, the exit code is 6");
@@ -192,12 +198,14 @@ void add_options(OptionParser& parser, StreamWords& words) {
   add_max_decoded_option(parser, words.max_decoded);
 }
 
-/// Whether the outputs may be written, before any work.
-Status claim_outputs(const StreamWords& words) {
+Status check_together(const StreamWords& words) {
   if (words.has_log && !words.output.json()) return Error{ErrorCode::kUsage, "--log", "needs --format json"};
-  if (words.path && words.builtin != StreamWords().builtin) {
-    return Error{ErrorCode::kUsage, "--path", "give this or --builtin, not both"};
-  }
+  if (words.path && words.builtin) return Error{ErrorCode::kUsage, "--path", "give this or --builtin, not both"};
+  return Ok{};
+}
+
+/// Whether the outputs may be written: once all that is read is known, before the simulation.
+Status claim_outputs(const StreamWords& words) {
   if (words.output_file) {
     if (words.output.json()) {
       TRY(check_text_name("-o", *words.output_file, {".json"}));
@@ -214,6 +222,7 @@ Status claim_outputs(const StreamWords& words) {
 }
 
 Result<int> stream(const StreamWords& words) {
+  TRY(check_together(words));
   TRY_LET(max_decoded, parse_max_decoded(words.max_decoded));
   TRY_LET(view, make_view(words));
   TRY_LET(scene, read_scene(words, *max_decoded));
@@ -224,7 +233,7 @@ Result<int> stream(const StreamWords& words) {
   app::Simulation simulation;
   limit.run([&] { simulation = app::simulate(*scene, *path, *view, *specs, {words.is_checked, words.has_log}); });
   const app::StreamReport report{
-      words.assets, words.path.value_or(words.builtin), *scene, *path, *view, *specs, simulation, words.is_checked,
+      words.assets, words.path.value_or(builtin_of(words)), *scene, *path, *view, *specs, simulation, words.is_checked,
       words.has_log};
   if (words.plot) TRY(write_text(*words.plot, stream_plot(report)));
   const std::string text = words.output.json() ? app::stream_json(report) : app::stream_text(report);

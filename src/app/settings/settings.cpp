@@ -15,6 +15,7 @@
 #include "builder/plan/plan.h"
 #include "builder/preset.h"
 #include "format/names.h"
+#include "scene/scene.h"
 
 namespace meshlode::app {
 
@@ -402,6 +403,12 @@ Result<Settled> settle(std::span<const SettingLayer> layers) {
     }
   }
   return Settled{options_of(settling.words()), settling.words()};
+}
+
+std::vector<std::string> names_of_meshes(const scene::Scene& scene) {
+  std::vector<std::string> names;
+  for (const scene::SourceMesh& mesh : scene.meshes) names.push_back(mesh.name);
+  return names;
 }
 
 Result<std::vector<SettledMesh>> settle_meshes(std::span<const SettingLayer> layers,

@@ -17,6 +17,10 @@
 
 #include "builder/options.h"
 
+namespace meshlode::scene {
+struct Scene;
+}
+
 namespace meshlode::app {
 
 /// Everything that changes the bytes of an asset. The order is that of the help.
@@ -120,6 +124,8 @@ struct SettledMesh {
   builder::MeshOptions options;
   std::vector<std::pair<Setting, SettledWord>> own;  ///< the words that differ from the whole's
 };
+
+[[nodiscard]] std::vector<std::string> names_of_meshes(const scene::Scene& scene);
 
 /// The same for each mesh by its name: a layer's own words, then its rules that match, then the next layer. Empty where
 /// no rule matches any.

@@ -80,7 +80,7 @@ std::string stream_text(const StreamReport& report) {
   for (const PathFrame& frame : report.frames) jumps += frame.is_jump ? 1 : 0;
   out += report.path;
   out += ": " + plural(report.frames.size(), "frame") + ", " + plural(jumps - 1, "cut") + "\n";
-  append_format(out, "picture        %ux%u at %.4g px, %u frames a second\n", report.view.width, report.view.height,
+  append_format(out, "picture        %ux%u at %.4g px, %u frames per second\n", report.view.width, report.view.height,
                 asked, report.view.fps);
   append_format(out, "working set    %.2f MB a frame, at most %.2f MB (%.1f%% of all)\n", to_mb(demand.mean_bytes),
                 to_mb(demand.max_bytes), 100.0 * static_cast<double>(demand.max_bytes) / all);

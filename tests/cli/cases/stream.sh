@@ -51,6 +51,9 @@ run stream rock.lode --path bad.csv
 : >bad.csv
 run stream rock.lode --path bad.csv
 run stream rock.lode --path missing.csv
+run stream missing.lode --path path.csv --builtin fly
+run stream missing.lode --log
+run stream rock.lode ./rock.lode
 code stream rock.lode --scene rock.lode
 run stream rock.lode -o rock.lode
 run stream rock.lode --plot rock.png

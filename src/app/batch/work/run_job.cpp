@@ -62,12 +62,6 @@ void count_scene(const scene::Scene& scene, JobFacts& facts) {
   facts.left_out = scene.left_out;
 }
 
-std::vector<std::string> names_of_meshes(const scene::Scene& scene) {
-  std::vector<std::string> names;
-  for (const scene::SourceMesh& mesh : scene.meshes) names.push_back(mesh.name);
-  return names;
-}
-
 /// Whether the file at `path` holds an asset already.
 bool holds(const fs::path& path, const AssetRecord& record) {
   const auto file = MappedFile::open(path);
