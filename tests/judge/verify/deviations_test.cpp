@@ -17,6 +17,7 @@
 #include "lab/samples/samples.h"
 #include "run/read/asset.h"
 #include "run/select/select.h"
+#include "support/random.h"
 
 namespace meshlode::judge {
 namespace {
@@ -38,6 +39,26 @@ Built build_rock(format::ErrorTier tier, std::uint32_t detail = 16) {
   EXPECT_TRUE(bytes.ok());
   built.bytes = std::move(*bytes);
   return built;
+}
+
+/// A thousand small sheets of 50 triangles in a cube of 3, each vertex of them up to a fiftieth of its size out of
+/// plane.
+scene::Primitive make_loose_sheets(std::uint64_t seed) {
+  constexpr std::uint32_t kSide = 5, kRow = kSide + 1;
+  test::RandomSource random(seed);
+  scene::Primitive out;
+  for (std::uint32_t piece = 0; piece < 1000; ++piece) {
+    const Vec3d corner = Vec3d(1.5) + random.in_cube(1.5);
+    const std::uint32_t first = piece * kRow * kRow;
+    for (std::uint32_t v = 0; v < kRow * kRow; ++v) {
+      out.positions.emplace_back(corner + 0.1 * Vec3d(v % kRow / 5.0, v / kRow / 5.0, 0.1 * random.unit()));
+    }
+    for (std::uint32_t q = 0; q < kSide * kSide; ++q) {
+      const std::uint32_t a = first + q / kSide * kRow + q % kSide;
+      for (const std::uint32_t v : {a, a + 1, a + kRow + 1, a, a + kRow + 1, a + kRow}) out.indices.push_back(v);
+    }
+  }
+  return out;
 }
 
 /// The ids of what was found, each once, in the order of the findings.
@@ -73,6 +94,25 @@ void scale_errors(AssetEdit& edit, float factor) {
     edit.node(n, [&](auto& node) { scale(node.error); });
   }
   edit.seal();
+}
+
+// More triangles than the builder looks at without shortcuts: a triangle between pieces is far from the source where
+// none of its few points is.
+TEST(Deviations, BetweenLoosePiecesAreTrue) {
+  for (const std::uint64_t seed : {1, 2}) {
+    const scene::Scene scene = lab::as_scene(lab::as_mesh(make_loose_sheets(seed)));
+    builder::PipelineReport report;
+    const auto bytes = builder::build_lode(scene, {}, {}, report);
+    ASSERT_TRUE(bytes.ok());
+    const Result<run::Asset> asset = run::Asset::from_vector(*bytes);
+    ASSERT_TRUE(asset.ok());
+    RuleLog log;
+    const auto cuts = check_deviations(*asset, scene, kAllCuts, kDeviationBudget, log);
+    EXPECT_GT(cuts.size(), 20U);
+    for (const CutBracket& cut : cuts) {
+      EXPECT_FALSE(cut.is_above(1.0)) << "seed " << seed << ": " << cut.lower << " of " << cut.stored;
+    }
+  }
 }
 
 class StoredErrors : public testing::TestWithParam<format::ErrorTier> {};
