@@ -84,9 +84,9 @@ std::string stream_text(const StreamReport& report) {
                 asked, report.view.fps);
   append_format(out, "working set    %.2f MB per frame, at most %.2f MB (%.1f%% of all)\n", to_mb(demand.mean_bytes),
                 to_mb(demand.max_bytes), 100.0 * static_cast<double>(demand.max_bytes) / all);
-  append_format(out, "               %.1f pages per frame, at most %llu; %llu of the path, %.2f MB\n", demand.mean_pages,
-                static_cast<unsigned long long>(demand.max_pages), static_cast<unsigned long long>(demand.union_pages),
-                to_mb(demand.union_bytes));
+  append_format(out, "               %.1f pages per frame, at most %llu; %llu of the path, %.2f MB\n",
+                demand.mean_pages, static_cast<unsigned long long>(demand.max_pages),
+                static_cast<unsigned long long>(demand.union_pages), to_mb(demand.union_bytes));
   append_format(out, "drawn share    %.1f%% of what a frame needs; %.1f%% if groups were loaded alone\n",
                 100.0 * demand.drawn_share, 100.0 * demand.whole_group_share);
   append_format(out, "always there   %.2f MB in %s; alone %s px are shown at most\n", to_mb(demand.root_bytes),
