@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # The target runtime-wasm: base, format and run as a WebAssembly module, in a build of its own with another compiler, put
 # together as a package for npm in ${PROJECT_BINARY_DIR}/npm. `info --html` has the module in its pages; without the packages
-# (tools/install-deps.sh --tests --wasm) it answers that it cannot.
+# (tools/install-deps.sh) it answers that it cannot.
 option(MESHLODE_WASM "The runtime as a WebAssembly module, and info --html, where the packages for it are there" ON)
 if(NOT MESHLODE_WASM)
   return()
@@ -13,7 +13,7 @@ find_file(MESHLODE_WASM_BUILTINS libclang_rt.builtins-wasm32.a
           PATHS /usr/lib/llvm-14/lib/clang/14.0.6/lib/wasi /usr/lib/llvm-14/lib/clang/14/lib/wasi NO_DEFAULT_PATH)
 mark_as_advanced(MESHLODE_WASM_COMPILER MESHLODE_WASM_LINKER MESHLODE_WASM_LIBCXX MESHLODE_WASM_BUILTINS)
 if(NOT (MESHLODE_WASM_COMPILER AND MESHLODE_WASM_LINKER AND MESHLODE_WASM_LIBCXX AND MESHLODE_WASM_BUILTINS))
-  message(STATUS "No compiler for WebAssembly: no runtime-wasm, no info --html (tools/install-deps.sh --tests --wasm)")
+  message(STATUS "No compiler for WebAssembly: no runtime-wasm, no info --html (tools/install-deps.sh)")
   set(MESHLODE_WASM OFF)
   return()
 endif()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Toolchain: WebAssembly by clang 14 with Debian's wasi-libc and libc++ (packages: tools/install-deps.sh --tests --wasm).
+# Toolchain: WebAssembly by clang 14 with Debian's wasi-libc and libc++ (packages: tools/install-deps.sh).
 set(CMAKE_SYSTEM_NAME Generic)  # CMake 3.25 knows no WASI
 set(CMAKE_SYSTEM_PROCESSOR wasm32)
 set(CMAKE_C_COMPILER clang-14)

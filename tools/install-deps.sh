@@ -4,7 +4,7 @@
 # need (a second compiler for the comparison of content hashes, sample models), and by group what tools/test.sh --all=GROUP
 # needs beyond that: --browser a browser, --docs the site of the documents, --npm encoders' npm, --packages a bare root, --portability another standard library and
 # a compiler for another system, --slurm a scheduler, which the test of tools/cluster starts for itself (a system that starts the
-# services of what it installs may start munge's), --wasm libraries for WebAssembly. Nothing happens where all are there.
+# services of what it installs may start munge's), --wasm Node. Nothing happens where all are there.
 set -euo pipefail
 
 packages=(
@@ -16,9 +16,10 @@ packages=(
   libpng-dev libjpeg62-turbo-dev libwebp-dev # image
   libstb-dev libcli11-dev                    # raster, command line
   libvulkan-dev glslc                        # gpu: headers and the shader compiler; the loader is opened at run time
+  clang-14 lld-14 wasi-libc libc++-14-dev-wasm32 libc++abi-14-dev-wasm32 libclang-rt-14-dev-wasm32  # the page of info --html
 )
 if [ "${1:-}" = --tests ]; then
-  packages+=(libgtest-dev clang-14 libclang-rt-14-dev lld-14 assimp-testmodels
+  packages+=(libgtest-dev libclang-rt-14-dev assimp-testmodels
              git clang-format-14 clang-tidy-14             # the form of the sources
              libzstd-dev liblz4-dev                        # pages of earlier development versions
              python3                                       # the independent readers of the format and of glTF
@@ -27,16 +28,14 @@ if [ "${1:-}" = --tests ]; then
              mesa-vulkan-drivers vulkan-validationlayers)  # a Vulkan device on any machine, and its judge
 fi
 
-# A back end of clang's, and the standard libraries for it.
-wasm=(clang-14 lld-14 wasi-libc libc++-14-dev-wasm32 libc++abi-14-dev-wasm32 libclang-rt-14-dev-wasm32)
 for group in "${@:2}"; do
   case $group in
     --docs) packages+=(mkdocs mkdocs-material doxygen) ;;
     --npm) command -v npm >/dev/null || packages+=(nodejs npm) ;;  # which may come from elsewhere
     --packages) packages+=(file dpkg-dev debootstrap) ;;
     --portability) packages+=(libc++-14-dev libc++abi-14-dev googletest g++-mingw-w64-x86-64 wine64) ;;
-    --wasm) packages+=("${wasm[@]}"); command -v node >/dev/null || packages+=(nodejs) ;;
-    --browser) packages+=(chromium fonts-dejavu-core "${wasm[@]}"); command -v node >/dev/null || packages+=(nodejs) ;;
+    --wasm) command -v node >/dev/null || packages+=(nodejs) ;;
+    --browser) packages+=(chromium fonts-dejavu-core); command -v node >/dev/null || packages+=(nodejs) ;;
     --slurm) packages+=(slurm-wlm munge) ;;
     *) echo "install-deps.sh: no group $group" >&2; exit 1 ;;
   esac

@@ -9,7 +9,7 @@ const MIN_SPAN = 1e-5; // of the row's width
 export class Graph {
   constructor(canvas, asset, made, cap, onSelect) {
     Object.assign(this, { canvas, asset, made, cap, onSelect });
-    this.measure = 'fill';
+    this.measure = 'cluster';
     this.selected = NONE;
     this.inCut = new Set();
     this.start = 0; // the part of the rows that is seen

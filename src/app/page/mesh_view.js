@@ -4,6 +4,8 @@
 import { NONE } from './index.js';
 
 const COLOUR_WIDTH = 1024;
+const FIELD_OF_VIEW = 0.7; // vertical, radians
+const FRAME_SHARE = 0.92; // of the picture that Home fills
 
 const VERTEX = `#version 300 es
 uniform mat4 camera;
@@ -45,7 +47,7 @@ void main() { picked = uvec2(id + 1u, 0u); }`;
 
 export class MeshView {
   /** Throws where there is no WebGL2. */
-  constructor(canvas, asset, { onSelect, onMove }) {
+  constructor(canvas, asset, { onSelect, onMove, onResize }) {
     Object.assign(this, { canvas, asset, onSelect, onMove });
     const gl = canvas.getContext('webgl2', { antialias: true });
     if (!gl) throw new Error('this browser has no WebGL2');
@@ -65,13 +67,17 @@ export class MeshView {
     canvas.addEventListener('wheel', (event) => this.#wheel(event), { passive: false });
     canvas.addEventListener('pointerdown', (event) => this.#press(event));
     canvas.addEventListener('keydown', (event) => this.#key(event));
-    new ResizeObserver(() => this.draw()).observe(canvas);
+    new ResizeObserver(() => {
+      this.draw();
+      onResize();
+    }).observe(canvas);
   }
 
-  /** The sphere that Home shows, world space; geometry is stored around its middle. */
-  frame(center, radius) {
+  /** The box that Home shows, world space: its middle, around which geometry is stored, and its half edges. */
+  frame({ center, half }) {
     this.center = center;
-    this.radius = radius > 0 ? radius : 1;
+    this.half = half;
+    this.radius = Math.hypot(...half) || 1;
     this.decoded.clear();
     this.decodedFloats = 0;
     this.#reset();
@@ -80,7 +86,22 @@ export class MeshView {
   #reset() {
     this.yaw = 0.6;
     this.pitch = 0.35;
-    this.distance = 2.7 * this.radius;
+    this.distance = 1;
+    this.distance = Math.max(this.#fittingDistance(), this.radius / 100);
+  }
+
+  /** From where all corners of the box are in the picture, with a rim. */
+  #fittingDistance() {
+    const { x, y, z } = cameraAxes(this.#eye());
+    const reach = FRAME_SHARE * Math.tan(FIELD_OF_VIEW / 2);
+    const aspect = this.canvas.clientWidth / Math.max(1, this.canvas.clientHeight) || 1;
+    let distance = 0;
+    for (let corner = 0; corner < 8; ++corner) {
+      const p = this.half.map((value, k) => ((corner >> k) & 1 ? value : -value));
+      const along = (axis) => axis[0] * p[0] + axis[1] * p[1] + axis[2] * p[2];
+      distance = Math.max(distance, along(z) + Math.max(Math.abs(along(x)) / aspect, Math.abs(along(y))) / reach);
+    }
+    return distance;
   }
 
   /** The camera as meshlode_view has it. */
@@ -88,9 +109,9 @@ export class MeshView {
     const eye = this.#eye();
     return {
       eye: eye.map((value, k) => value + this.center[k]),
-      fovyRadians: 0.7,
+      fovyRadians: FIELD_OF_VIEW,
       nearDistance: this.#near(),
-      heightPx: Math.max(1, this.canvas.height),
+      heightPx: Math.max(1, Math.round(this.canvas.clientHeight * (window.devicePixelRatio || 1))),
     };
   }
 
@@ -314,14 +335,20 @@ function compile(gl, fragment) {
   return program;
 }
 
-/** Looks from the eye to the origin, y up; column-major. */
-function cameraMatrix(eye, aspect, near, far) {
+/** Of a camera that looks from the eye to the origin, y up: right, up and backwards. */
+function cameraAxes(eye) {
   const length = Math.hypot(...eye);
   const z = eye.map((value) => value / length);
   const flat = Math.hypot(z[0], z[2]);
   const x = [z[2] / flat, 0, -z[0] / flat];
   const y = [z[1] * x[2] - z[2] * x[1], z[2] * x[0] - z[0] * x[2], z[0] * x[1] - z[1] * x[0]];
-  const focus = 1 / Math.tan(0.35);
+  return { x, y, z };
+}
+
+/** Looks from the eye to the origin; column-major. */
+function cameraMatrix(eye, aspect, near, far) {
+  const { x, y, z } = cameraAxes(eye);
+  const focus = 1 / Math.tan(FIELD_OF_VIEW / 2);
   const depth = (far + near) / (near - far);
   const shift = (2 * far * near) / (near - far);
   const dot = (a) => a[0] * eye[0] + a[1] * eye[1] + a[2] * eye[2];

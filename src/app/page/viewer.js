@@ -9,6 +9,16 @@ import { MeshView } from './mesh_view.js';
 const FIRST_FRAME_TRIANGLES = 100000;
 const MOST_TRIANGLES = 1500000;
 const ERROR_STEPS = 400;
+const PIXEL_STEPS = [-20, 60]; // tenths of a power of two: a quarter of a pixel to 64
+const SECTION_WORDS = {
+  META: 'settings and versions', SCNE: 'scene', STRS: 'names', MESH: 'meshes', MATL: 'materials', INST: 'instances',
+  GRUP: 'groups', CLUS: 'clusters', NODE: 'hierarchy', PAGT: 'page table', PDEP: 'page dependencies', BLBT: 'image table',
+  PAGE: 'geometry', BLOB: 'images',
+};
+const STREAM_WORDS = {
+  heads: 'cluster headers', materials: 'materials', positions: 'positions', normals: 'normals', uvs: 'texture coordinates',
+  colors: 'colours', topology: 'triangles', padding: 'padding',
+};
 
 const byId = (id) => document.getElementById(id);
 const number = (value) => Number(value).toLocaleString('en-GB');
@@ -82,11 +92,13 @@ class Viewer {
       this.view = new MeshView(byId('mesh-view'), asset, {
         onSelect: (cluster) => this.select(cluster),
         onMove: () => this.cameraMoved(),
+        onResize: () => this.cameraMoved(),
       });
     } catch (error) {
       byId('mesh-view').hidden = true;
       byId('mesh-keys').textContent = `No 3D: ${error.message}.`;
       document.querySelector('input[value=camera]').disabled = true;
+      document.querySelector('input[value=uniform]').checked = true;
     }
   }
 
@@ -109,12 +121,15 @@ class Viewer {
     byId('pixels').addEventListener('input', () => this.recut());
     for (const radio of document.querySelectorAll('input[name=cut]')) {
       radio.addEventListener('change', () => {
-        const isCamera = this.isCameraCut();
-        byId('error-label').hidden = isCamera;
-        byId('pixels-label').hidden = !isCamera;
+        this.showSlider();
         this.recut();
       });
     }
+  }
+
+  showSlider() {
+    byId('error-label').hidden = this.isCameraCut();
+    byId('pixels-label').hidden = !this.isCameraCut();
   }
 
   applyTheme(isDark) {
@@ -144,9 +159,10 @@ class Viewer {
     this.mesh = mesh;
     byId('mesh').value = String(mesh);
     this.graph.show(mesh < 0 ? this.shown()[0]?.mesh ?? 0 : mesh);
-    const { center, radius } = boundsOf(this.asset, this.shown());
-    this.view?.frame(center, radius);
+    this.view?.frame(boundsOf(this.asset, this.shown()));
     byId('error').value = String(this.firstStep());
+    if (this.view) byId('pixels').value = String(this.firstPixels());
+    this.showSlider();
     this.recut();
   }
 
@@ -197,11 +213,19 @@ class Viewer {
     return high;
   }
 
+  /** From one pixel on, the smallest step within the triangles of a first frame. */
+  firstPixels() {
+    for (let step = 0; step < PIXEL_STEPS[1]; ++step) {
+      if (this.triangles(this.cameraCut(2 ** (step / 10))) <= FIRST_FRAME_TRIANGLES) return step;
+    }
+    return PIXEL_STEPS[1];
+  }
+
   recut() {
     const step = Number(byId('error').value);
     const pixels = 2 ** (Number(byId('pixels').value) / 10);
     say('error', step === 0 ? 'finest' : `${short(this.relativeError(step))} of the diagonal`);
-    say('pixels', short(pixels));
+    say('pixels', pixels === 1 ? '1 pixel' : `${short(pixels)} pixels`);
     const isCamera = this.isCameraCut() && this.view !== null;
     let cut = isCamera ? this.cameraCut(pixels) : this.uniformCut(step);
     let note = '';
@@ -326,16 +350,30 @@ class Viewer {
         ...(isWhole ? [] : [number(level.absent)]),
       ]).filter(Boolean));
     const bits = this.facts.level_bits ?? [];
-    const names = ['heads', 'materials', 'positions', 'normals', 'uvs', 'colors', 'topology', 'padding'];
+    const names = Object.keys(STREAM_WORDS);
     const sums = bits.map((level) => names.reduce((sum, name) => sum + level[name], 0));
     const most = Math.max(1, ...sums);
     const rows = bits.map((level, l) => [
       String(l), ...names.map((name) => number(Math.round(level[name] / 8))), number(Math.round(sums[l] / 8)), sums[l] / most,
     ]);
-    fillTable(byId('bytes'), ['decoded, by level', ...names, 'sum', 'share of the largest'], rows);
+    fillTable(byId('bytes'), ['decoded, by level', ...Object.values(STREAM_WORDS), 'sum', 'share of the largest'], rows);
+    byId('bytes-text').textContent = this.bytesText(bits, names);
     const largest = Math.max(1, ...this.facts.sections.map(([, size]) => size));
     fillTable(byId('sections'), ['section', 'bytes', 'share of the largest'],
-      this.facts.sections.map(([name, size]) => [name, number(size), size / largest]));
+      this.facts.sections.map(([name, size]) => [SECTION_WORDS[name] ? `${name}: ${SECTION_WORDS[name]}` : name, number(size), size / largest]));
+  }
+
+  /** Where the bytes are, in words. */
+  bytesText(bits, names) {
+    const of = (wanted) => this.facts.sections.reduce((sum, [name, size]) => sum + (name === wanted ? size : 0), 0);
+    const [geometry, images] = [of('PAGE'), of('BLOB')];
+    const tables = this.facts.file_bytes - geometry - images;
+    const streams = names.map((name) => [STREAM_WORDS[name], bits.reduce((sum, level) => sum + level[name], 0)]);
+    const all = streams.reduce((sum, [, size]) => sum + size, 0);
+    const shares = streams.filter(([, size]) => size > 0.005 * all).sort((a, b) => b[1] - a[1])
+      .map(([name, size]) => `${name} ${Math.round((100 * size) / all)}%`);
+    const file = `The file: geometry ${number(geometry)} bytes, images ${number(images)}, tables and padding ${number(tables)}.`;
+    return all === 0 ? file : `${file} Decoded geometry: ${shares.join(', ')}.`;
   }
 }
 
@@ -374,9 +412,8 @@ function boundsOf(asset, shown) {
       }
     }
   }
-  if (!(low[0] <= high[0])) return { center: [0, 0, 0], radius: 1 };
-  const center = low.map((value, k) => (value + high[k]) / 2);
-  return { center, radius: Math.hypot(...low.map((value, k) => (high[k] - value) / 2)) };
+  if (!(low[0] <= high[0])) return { center: [0, 0, 0], half: [1, 1, 1] };
+  return { center: low.map((value, k) => (value + high[k]) / 2), half: low.map((value, k) => (high[k] - value) / 2) };
 }
 
 async function main() {

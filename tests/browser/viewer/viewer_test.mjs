@@ -97,7 +97,13 @@ async function look(browser, url, name, view) {
     expect(ratio >= least, `${label}: ${fore} on ${ground} has a contrast of ${ratio.toFixed(1)}`);
   }
 
+  expect(await tab.value(`document.getElementById('measure').value === 'cluster'`), `${label}: clusters are in colour at first`);
+  expect(/^[0-9.]+ pixels?$/.test(await tab.value(text('pixels-value'))), `${label}: the slider's error is in pixels`);
   const first = await tab.value(triangles);
+  await tab.value(setRange('pixels', 60));
+  expect((await tab.value(triangles)) < first || first < 129, `${label}: more pixels make the cut coarser`);
+  expect(/geometry [0-9,]+ bytes/.test(await tab.value(text('bytes-text'))), `${label}: bytes are told in words`);
+  await tab.value(`document.querySelector('input[value=uniform]').click()`);
   await tab.value(setRange('error', 400));
   const coarse = await tab.value(triangles);
   expect(coarse < first || first < 129, `${label}: the slider makes the cut coarser, ${first} to ${coarse}`);
@@ -125,11 +131,12 @@ async function look(browser, url, name, view) {
     `${label}: and to a finer one`);
 
   await tab.value(`document.querySelector('input[value=camera]').click()`);
+  await tab.value(setRange('pixels', 0));
   const near = await tab.value(triangles);
   await tab.value(setRange('pixels', 60));
   const far = await tab.value(triangles);
   expect(near > 0 && far > 0 && far <= near, `${label}: the camera's cut, ${near} at one pixel, ${far} at 64`);
-  for (const measure of ['ratio', 'stuck', 'page', 'cluster']) {
+  for (const measure of ['fill', 'ratio', 'stuck', 'page', 'cluster']) {
     await tab.value(`(() => { const e = document.getElementById('measure'); e.value = '${measure}'; e.dispatchEvent(new Event('change')); })()`);
     expect((await tab.value(text('legend'))).length > 40, `${label}: ${measure} has a legend`);
   }
@@ -163,7 +170,7 @@ async function listen(browser, url) {
     if (order.includes(id)) break;
     order.push(id);
   }
-  const wanted = ['theme', 'mesh', 'measure', 'cut', 'error', 'mesh-view', 'graph'];
+  const wanted = ['theme', 'mesh', 'measure', 'cut', 'pixels', 'mesh-view', 'graph'];
   expect(wanted.every((id, k) => order[k] === id), `the key Tab goes to ${order.join(', ')}`);
   await tab.send('Accessibility.enable');
   const { nodes } = await tab.send('Accessibility.getFullAXTree');
@@ -176,7 +183,7 @@ async function listen(browser, url) {
     const count = roles.filter((r) => r === role).length;
     expect(count >= least, `${count} of the role ${role}`);
   }
-  expect((await tab.value(`document.getElementById('error').getAttribute('aria-valuetext')`)).length > 3, 'the slider says what it is at');
+  expect((await tab.value(`document.getElementById('pixels').getAttribute('aria-valuetext')`)).length > 3, 'the slider says what it is at');
   await tab.value(`document.getElementById('mesh-view').focus()`);
   const yaw = await tab.value(`window.meshlodeViewer.view.yaw`);
   await tab.press('ArrowRight');
