@@ -4,12 +4,15 @@
 
     cmake --preset release -DMESHLODE_BENCH=ON && ninja -C build/release
     MESHLODE_MODELS=DIR bench/results.py accuracy brackets     # these tables; --list names all; no name: every table
+    MESHLODE_MODELS=DIR bench/results.py --jobs 16             # tables and scenes side by side, on a machine with as many cores
 
 A table lies between `<!-- NAME: begin -->` and `<!-- NAME: end -->` in its page. docs/log/results/TABLE.json has its commit,
 machine, command, the content hashes of its assets, its figures where they are measured here, and a hash of the text in the page.
-tools/release-check compares these with the repository. Tables that another script of bench/ makes are made by that script.
+tools/release-check compares these with the repository. What another script of bench/ measures it prints; tables of docs/log that
+are not named here are of the commits that they name.
 """
 import argparse
+import concurrent.futures
 import dataclasses
 import datetime
 import hashlib
@@ -33,8 +36,6 @@ class Table:
     page: str
     scenes: list              # whose content hashes are recorded; "data/rock" is data/rock.glb, "rock" a file of MESHLODE_MODELS
     command: list             # a script of bench/ and its arguments; empty: measured here
-    markers: list = dataclasses.field(default_factory=list)  # of the page; empty: the table's own name
-    prints: bool = False      # the script prints the table; else it writes the page itself
     minutes: int = 1          # an estimate for --list; the result has what it took
 
 
@@ -44,20 +45,14 @@ TABLES = {
     "accuracy": Table("README.md", MODELS, [], minutes=15),
     "brackets": Table("docs/explanation/errors.md", REAL + ALL_DATA, [], minutes=12),
     "defaults": Table("docs/log/size.md", ALL_DATA + ["FlightHelmet", "bunny"],
-                      ["bench/size/defaults.py", TOOL, LIBRARY, "MODELS", "data"], prints=True, minutes=2),
-    "gpu-form": Table("docs/log/size.md", REAL, ["bench/size/gpu_form.py", TOOL, "MODELS"], prints=True, minutes=3),
+                      ["bench/size/defaults.py", TOOL, LIBRARY, "MODELS", "data"], minutes=2),
+    "gpu-form": Table("docs/log/size.md", REAL, ["bench/size/gpu_form.py", TOOL, "MODELS"], minutes=3),
     "disk-form": Table("docs/log/size.md", ALL_DATA + ["bunny", "spot", "FlightHelmet", "dragon"],
-                       ["bench/size/disk_form.py", TOOL, "MODELS", "data"], prints=True, minutes=3),
+                       ["bench/size/disk_form.py", TOOL, "MODELS", "data"], minutes=3),
     "plan": Table("docs/log/plan.md", ["FlightHelmet", "dragon"] + ALL_DATA, ["bench/plan/measure.py", TOOL, "MODELS", "data"],
-                  prints=True, minutes=6),
-    "builds": Table("docs/log/build-time.md", REAL[:2] + ALL_DATA, ["bench/build/run.py", "--document"], minutes=60),
-    "measured": Table("docs/log/quality.md", REAL, ["bench/quality/run.py"], minutes=90),
-    "promise": Table("docs/log/quality.md", ["FlightHelmet", "spot"], ["bench/promise/run.py", "--document"], minutes=20),
-    "borders": Table("docs/log/quality.md", ["bunny", "FlightHelmet"], ["bench/borders/run.py", "--document"], minutes=4),
-    "topology": Table("docs/log/numerics.md", ["bunny", "FlightHelmet"], ["bench/topology/run.py", "--document"], minutes=10),
-    "care": Table("docs/log/numerics.md", ["bunny", "FlightHelmet"], ["bench/care/run.py", "--document"], minutes=60),
-    "aggregates": Table("docs/log/aggregates.md", ["data/foliage"], ["bench/aggregate/run.py", "--document"],
-                        ["cuts", "others", "times"], minutes=20),
+                  minutes=6),
+    "borders": Table("docs/log/quality.md", ["data/terrain"], ["bench/borders/run.py"], minutes=4),
+    "topology": Table("docs/log/numerics.md", ["bunny", "dragon"], ["bench/topology/run.py"], minutes=10),
 }
 # What a table of accuracy has in a row: settings that differ from the defaults, as a sweep names them.
 ROWS = [
@@ -105,8 +100,10 @@ def machine():
     return {"processor": names[0] if names else "unknown", "cores": len(names) or os.cpu_count()}
 
 
-def origin():
-    """The commit, and whether the program may be of something else than that."""
+def origin(commit):
+    """The commit, and whether the program may be of something else than that. `commit`: as somebody says who has no repository."""
+    if commit:
+        return {"commit": commit, "is_changed": False}
     changed = run("git", "status", "--porcelain", "--", "src", "include", "tools/meshlode", "cmake", "CMakeLists.txt",
                   "bench")
     return {"commit": run("git", "rev-parse", "HEAD").strip(), "is_changed": bool(changed.strip())}
@@ -117,23 +114,21 @@ def text_table(header, rows):
     return "\n".join(lines + ["| " + " | ".join(row) + " |" for row in rows])
 
 
-def measure_accuracy(scenes, folder):
+def measure_accuracy(name, folder):
+    report = Path(folder) / "sweep"
+    meshlode("sweep", scene_path(name), "-o", report, *SWEEP, "--quiet")
+    points = json.loads((report / "sweep.json").read_text())["points"]
     figures = {}
-    for name in scenes:
-        report = Path(folder) / name.replace("/", "-")
-        meshlode("sweep", scene_path(name), "-o", report, *SWEEP, "--quiet")
-        points = json.loads((report / "sweep.json").read_text())["points"]
-        figures[name] = {}
-        for label, changed in ROWS:
-            wanted = {**KNOBS, **changed}
-            found = [p for p in points if p["status"] == "done" and
-                     all(p["settings"].get(knob, value) == value for knob, value in wanted.items())]
-            if not found:
-                continue  # a promise that the scene has nothing for
-            value = {key: one["value"] for key, one in found[0]["figures"].items()}
-            view = next(p for p in found[0]["pictures"] if p["view"] == "near")
-            figures[name][label] = {"content_hash": found[0]["content_hash"], "seconds": value["build_user_seconds"],
-                                    "bytes": value["geometry_bytes"], "equal": value["triangles_at_max"], "drawn": view["triangles"]}
+    for label, changed in ROWS:
+        wanted = {**KNOBS, **changed}
+        found = [p for p in points if p["status"] == "done" and
+                 all(p["settings"].get(knob, value) == value for knob, value in wanted.items())]
+        if not found:
+            continue  # a promise that the scene has nothing for
+        value = {key: one["value"] for key, one in found[0]["figures"].items()}
+        view = next(p for p in found[0]["pictures"] if p["view"] == "near")
+        figures[label] = {"content_hash": found[0]["content_hash"], "seconds": value["build_user_seconds"],
+                          "bytes": value["geometry_bytes"], "equal": value["triangles_at_max"], "drawn": view["triangles"]}
     return figures
 
 
@@ -152,17 +147,15 @@ def accuracy_text(figures, about):
     return text_table(header, rows) + "\n\nBy `meshlode sweep SCENE -o report " + " ".join(SWEEP) + "`; " + about + "."
 
 
-def measure_brackets(scenes, folder):
-    figures = {}
-    for name in scenes:
-        scene, asset = scene_path(name), Path(folder) / "asset.lode"
-        meshlode("build", scene, "-o", asset, "--quiet", "--no-settings-file")
-        report = json.loads(meshlode("verify", asset, "--source", scene, "--deviation-cuts", "all", "--format", "json", codes=(0, 6)))
-        cuts = report["deviations"]
-        shares = [cut["lower"] / cut["stored"] for cut in cuts if cut["stored"]]
-        figures[name] = {"cuts": len(cuts), "above": sum(s > 1.0 for s in shares), "beyond": sum(s > 1.05 for s in shares),
-                         "undecided": sum(cut["verdict"] == "undecided" for cut in cuts), "largest": max(shares, default=0.0)}
-    return figures
+def measure_brackets(name, folder):
+    scene, asset = scene_path(name), Path(folder) / "asset.lode"
+    meshlode("build", scene, "-o", asset, "--quiet", "--no-settings-file")
+    report = json.loads(meshlode("verify", asset, "--source", scene, "--deviation-cuts", "all", "--cameras", "0", "--format", "json",
+                                 codes=(0, 6)))
+    cuts = report["deviations"]
+    shares = [cut["lower"] / cut["stored"] for cut in cuts if cut["stored"]]
+    return {"cuts": len(cuts), "above": sum(s > 1.0 for s in shares), "beyond": sum(s > 1.05 for s in shares),
+            "undecided": sum(cut["verdict"] == "undecided" for cut in cuts), "largest": max(shares, default=0.0)}
 
 
 def brackets_text(figures, about):
@@ -186,41 +179,44 @@ def split_page(text, marker):
 
 def page_hash(root, name, table):
     """Of what lies between the markers of a table's page; None where a marker is missing."""
-    text, parts = (Path(root) / table.page).read_text(encoding="utf-8"), []
-    for marker in table.markers or [name]:
-        split = split_page(text, marker)
-        if split is None:
-            return None
-        parts.append(split[1])
-    return hashlib.sha256("".join(parts).encode()).hexdigest()
+    split = split_page((Path(root) / table.page).read_text(encoding="utf-8"), name)
+    return None if split is None else hashlib.sha256(split[1].encode()).hexdigest()
 
 
-def make(name, table, scenes, folder, out):
-    begin, result = time.monotonic(), {"table": name, "page": table.page, **origin(), "machine": machine()}
+def measure(name, scenes, options, pool):
+    """The result of one table, and its text."""
+    table, begin = TABLES[name], time.monotonic()
+    result = {"table": name, "page": table.page, **origin(options.commit), "machine": machine()}
     about = f"commit {result['commit'][:8]}, {result['machine']['cores']} cores of {result['machine']['processor']}"
-    text = None
-    if table.command:
-        script = [str(Path(os.environ.get("MESHLODE_MODELS", ".")).resolve()) if part == "MODELS" else part for part in table.command]
-        result["command"] = " ".join(table.command)
-        said = run(sys.executable, "-B", *script)
-        text = said.strip() + f"\n\n{about[0].upper()}{about[1:]}." if table.prints else None
-    else:
-        measure, write = MEASURED[name]
-        result["command"] = f"bench/results.py {name}"
-        result["figures"] = measure(scenes, folder)
-        text = write(result["figures"], about)
-    result["assets"] = {scene: content_hash(scene_path(scene), folder) for scene in scenes}
+    with tempfile.TemporaryDirectory() as folder:
+        def of_scenes(one):
+            def in_own_folder(scene):
+                with tempfile.TemporaryDirectory(dir=folder) as own:
+                    return one(scene, own)
+            return dict(zip(scenes, pool.map(in_own_folder, scenes)))
+
+        if table.command:
+            models = str(Path(os.environ.get("MESHLODE_MODELS", ".")).resolve())
+            result["command"] = " ".join(table.command)
+            printed = run(sys.executable, "-B", *(models if part == "MODELS" else part for part in table.command))
+            text = f"{printed.strip()}\n\n{about[0].upper()}{about[1:]}."
+        else:
+            measured, write = MEASURED[name]
+            result["command"] = f"bench/results.py {name}"
+            result["figures"] = of_scenes(measured)
+            text = write(result["figures"], about)
+        result["assets"] = of_scenes(lambda scene, own: content_hash(scene_path(scene), own))
     result["date"], result["minutes"] = datetime.date.today().isoformat(), round((time.monotonic() - begin) / 60, 1)
-    if out is not None:
-        (out / f"{name}.json").write_text(json.dumps(result, indent=1) + "\n")
-        (out / f"{name}.md").write_text((text or f"in {table.page}") + "\n")
-        return
-    if text is not None:
-        page = ROOT / table.page
-        split = split_page(page.read_text(encoding="utf-8"), name)
-        if split is None:
-            raise SystemExit(f"results: {table.page}: the markers of {name} are missing")
-        page.write_text(f"{split[0]}\n\n{text}\n\n{split[2]}", encoding="utf-8")
+    print(f"results: {name}: measured", file=sys.stderr, flush=True)
+    return result, text
+
+
+def write_page(name, table, result, text):
+    page = ROOT / table.page
+    split = split_page(page.read_text(encoding="utf-8"), name)
+    if split is None:
+        raise SystemExit(f"results: {table.page}: the markers of {name} are missing")
+    page.write_text(f"{split[0]}\n\n{text}\n\n{split[2]}", encoding="utf-8")
     result["page_sha256"] = page_hash(ROOT, name, table)
     (ROOT / RESULTS).mkdir(parents=True, exist_ok=True)
     (ROOT / RESULTS / f"{name}.json").write_text(json.dumps(result, indent=1) + "\n")
@@ -230,7 +226,10 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("tables", nargs="*", metavar="TABLE")
     parser.add_argument("--list", action="store_true", help="names, pages and about how many minutes each takes")
+    parser.add_argument("--jobs", type=int, default=1, help="tables, and scenes of a table, that are measured at once")
+    parser.add_argument("--commit", help="of the programs, where there is no repository")
     parser.add_argument("--try", dest="out", type=Path, help="write into this folder and leave pages and results alone")
+    parser.add_argument("--from", dest="tried", type=Path, help="measure nothing: take what --try wrote into this folder")
     parser.add_argument("--scenes", help="with --try: these scenes alone, comma-separated")
     options = parser.parse_args()
     if options.list:
@@ -240,17 +239,23 @@ def main():
     unknown = [name for name in options.tables if name not in TABLES]
     if unknown or (options.scenes and not options.out):
         parser.error(f"no table is called {unknown[0]}: --list names them" if unknown else "--scenes needs --try")
-    if options.out:
-        options.out = options.out.resolve()
-        options.out.mkdir(parents=True, exist_ok=True)
-        written = [name for name in options.tables or TABLES if TABLES[name].command and not TABLES[name].prints]
-        if written:
-            parser.error(f"{written[0]}: its script writes the page, so that it cannot be tried")
-    for name in options.tables or TABLES:
-        scenes = options.scenes.split(",") if options.scenes else TABLES[name].scenes
-        with tempfile.TemporaryDirectory() as folder:
-            make(name, TABLES[name], scenes, folder, options.out)
-        print(f"results: {name}: done", file=sys.stderr, flush=True)
+    names = options.tables or list(TABLES)
+    if options.tried:
+        for name in names:
+            result = json.loads((options.tried / f"{name}.json").read_text())
+            write_page(name, TABLES[name], result, (options.tried / f"{name}.md").read_text().strip())
+        return
+    with concurrent.futures.ThreadPoolExecutor(options.jobs) as tables, concurrent.futures.ThreadPoolExecutor(options.jobs) as scenes:
+        waited = {tables.submit(measure, name, options.scenes.split(",") if options.scenes else TABLES[name].scenes, options,
+                                scenes): name for name in names}
+        for done in concurrent.futures.as_completed(waited):
+            name, (result, text) = waited[done], done.result()
+            if options.out is None:
+                write_page(name, TABLES[name], result, text)
+                continue
+            options.out.mkdir(parents=True, exist_ok=True)
+            (options.out / f"{name}.json").write_text(json.dumps(result, indent=1) + "\n")
+            (options.out / f"{name}.md").write_text(text + "\n")
 
 
 if __name__ == "__main__":

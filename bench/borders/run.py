@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What --lock-borders costs in triangles: the table of docs/log/quality.md.
+"""What --lock-borders costs in triangles: the table borders of docs/log/quality.md (bench/results.py).
 
     cmake --preset release && ninja -C build/release meshlode_cli
-    MESHLODE_MODELS=DIR bench/borders/run.py --document
+    MESHLODE_MODELS=DIR bench/borders/run.py
 
 Each scene is built with and without. Triangles are those of uniform cuts at equal stored errors, as shares of the diagonal, and of
 the coarsest cut.
@@ -18,7 +18,6 @@ import tempfile
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-BEGIN, END = "<!-- borders: begin -->", "<!-- borders: end -->"
 ERRORS = [1e-3, 3e-3, 1e-2]
 WAYS = [[], ["--lock-borders"]]
 
@@ -63,7 +62,6 @@ def row_of(meshlode, name, scene, folder):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--build", default="build/release")
-    parser.add_argument("--document", action="store_true", help="write docs/log/quality.md")
     options = parser.parse_args()
     table = ["| scene | triangles | locked vertices | " + " | ".join(f"at {error:g}" for error in ERRORS) +
              " | coarsest cut | bytes |", "| --- | ---: | ---: | " + "---: | " * len(ERRORS) + "---: | ---: |"]
@@ -77,14 +75,7 @@ def main():
         for name, scene in scenes:
             table.append(row_of(ROOT / options.build / "meshlode", name, scene, folder))
             print(table[-1], file=sys.stderr, flush=True)
-    text = "\n".join(table) + "\n"
-    if not options.document:
-        print(text)
-        return
-    page = ROOT / "docs/log/quality.md"
-    before, _, rest = page.read_text().partition(BEGIN)
-    _, _, after = rest.partition(END)
-    page.write_text(f"{before}{BEGIN}\n\n{text}\n{END}{after}")
+    print("\n".join(table))
 
 
 if __name__ == "__main__":

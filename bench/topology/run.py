@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What --keep-topology costs: the table of docs/log/numerics.md.
+"""What --keep-topology costs: the table topology of docs/log/numerics.md (bench/results.py).
 
     cmake --preset release && ninja -C build/release meshlode_cli
-    MESHLODE_MODELS=DIR bench/topology/run.py --document
+    MESHLODE_MODELS=DIR bench/topology/run.py
 
 Each scene is built with and without, in turns. Triangles are those of uniform cuts at equal stored errors, 24 of them evenly in
 the logarithm from 1e-4 to 1e-2 of the diagonal: the geometric mean of the shares. One seed of the partition: another draw moves a
@@ -20,7 +20,6 @@ import tempfile
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-BEGIN, END = "<!-- topology: begin -->", "<!-- topology: end -->"
 ERRORS = [10 ** (-4 + 2 * i / 23) for i in range(24)]
 WAYS = [[], ["--keep-topology"]]
 
@@ -72,7 +71,6 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--build", default="build/release")
     parser.add_argument("--rounds", type=int, default=3)
-    parser.add_argument("--document", action="store_true", help="write docs/log/numerics.md")
     options = parser.parse_args()
     models = Path(os.environ["MESHLODE_MODELS"])
     scenes = [ROOT / "data" / f"{name}.glb" for name in ("rock", "crystal", "terrain", "foliage")]
@@ -83,14 +81,7 @@ def main():
         for scene in scenes:
             table.append(row_of(ROOT / options.build / "meshlode", scene, options.rounds, Path(folder)))
             print(table[-1], file=sys.stderr, flush=True)
-    text = "\n".join(table) + "\n"
-    if not options.document:
-        print(text)
-        return
-    page = ROOT / "docs/log/numerics.md"
-    before, _, rest = page.read_text().partition(BEGIN)
-    _, _, after = rest.partition(END)
-    page.write_text(f"{before}{BEGIN}\n\n{text}\n{END}{after}")
+    print("\n".join(table))
 
 
 if __name__ == "__main__":
