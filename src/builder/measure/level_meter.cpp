@@ -63,6 +63,10 @@ void LevelMeter::link_source() {
   source_neighbor_ = link_edges(source.triangles, source.positions.size(), [&](std::uint32_t position) {
     return source.vertex_of.empty() ? position : source.vertex_of[position];
   });
+  source_normal_.resize(source.triangles.size());
+  parallel_for_each_index(source.triangles.size(), 4096, [&](std::size_t t) {
+    source_normal_[t] = unit_normal(source.corners(static_cast<std::uint32_t>(t)));
+  });
 }
 
 void LevelMeter::measure_level(std::uint32_t first_group, std::uint32_t end_group) {

@@ -141,6 +141,7 @@ class LevelMeter {
   SourceTree source_;
   SourceUnits units_;
   std::vector<LinkedSurface::Triangle> source_neighbor_;  ///< of link_source()
+  std::vector<Vec3f> source_normal_;                      ///< likewise
   std::vector<std::vector<std::uint32_t>> outputs_;       ///< per group: the clusters that it made
   std::vector<std::uint8_t> is_new_;                      ///< per vertex of the DAG: no finer cluster has it
   std::vector<std::uint32_t> owner_;                      ///< per vertex of a unit: the cluster that stands for it

@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the groups of a level made against the source.
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <vector>
+
 #include "builder/deviation/bounded_search.h"
 #include "builder/measure/level_meter.h"
 
@@ -24,6 +29,33 @@ constexpr std::size_t kMostPiecesOfMade = 1024;
 /// lie over a hundred steps of a staircase: with a sixteenth a sheared plane that floats make into stairs has a cut at
 /// 1.11 of its error, and random scene 110424 with all of its appearance promised one at 1.04.
 constexpr std::size_t kPartsOfMade = 4096;
+
+/// A part of a triangle is divided while it is wider than so many times what is known, and while that is more than this
+/// share of the source triangle below: one source triangle is then near to all of a part soon, and the many beside it
+/// are not looked at. Without, rocker-arm takes 0.54 s for 0.40, homer 0.27 for 0.20; 1 to 2 times and shares of 0.15
+/// to 0.5 are within 10% of that, a share of 0 takes fandisk from 0.3 to 1.15 s.
+constexpr double kDivided = 1.5, kShareOfSource = 0.25;
+/// Divided so often at most: into 4096 parts, about as many as source triangles an overlay would pass.
+constexpr std::uint32_t kMostDivisions = 6;
+/// For the middle of a part any triangle so near will do, as a share of what is known.
+constexpr double kNearMiddle = 0.25;
+
+double longest_edge(const TriangleCorners& c) {
+  return std::max(glm::distance(c[0], c[1]), std::max(glm::distance(c[1], c[2]), glm::distance(c[2], c[0])));
+}
+
+struct PartOfMade {
+  TriangleCorners corners;
+  TreeSlot near;
+  std::uint32_t divisions = 0;
+};
+
+/// The distance to one triangle is convex: what its corners are near to, all of a part is near to.
+bool is_within_of(const TriangleCorners& below, const TriangleCorners& part, double within) {
+  const TriangleDistance distance(below);
+  return std::all_of(part.begin(), part.end(),
+                     [&](const Vec3d& x) { return distance.squared_to(x) <= within * within; });
+}
 
 }  // namespace
 
@@ -75,8 +107,9 @@ void LevelMeter::check_made(const LevelSurface& surface, Made& made) const {
   };
   BoundedSearch search(source, kTolerance, within);
   std::size_t searched = 0;
-  const LinkedSurface linked{impl.positions, impl.triangles, source_neighbor_, {}, source, impl.place};
+  const LinkedSurface linked{impl.positions, impl.triangles, source_neighbor_, source_normal_, source, impl.place};
   Overlay overlay(linked, kMostPiecesOfMade);
+  std::vector<PartOfMade> parts;
   for (std::uint32_t i = 0; i < made.triangle_count; ++i) {
     const std::uint32_t k = made.first_triangle + i;
     if (!made.near[i].is_valid()) continue;
@@ -96,12 +129,30 @@ void LevelMeter::check_made(const LevelSurface& surface, Made& made) const {
       raise(most);
       if (most <= (is_between ? kPromiseBetween : kPromise) * within) continue;
     }
-    if (overlay.is_within({a, b, c}, source.triangle_at(made.near[i]), within)) continue;
-    for (const Overlay::Far& far : overlay.far()) raise(far.distance);
-    if (overlay.rest().empty()) continue;
-    ++searched;
-    for (const Overlay::Rest& rest : overlay.rest())
-      search.add_later(rest.corners, impl.place_of(rest.near), rest.bound);
+    bool is_searched = false;
+    parts.assign(1, {{a, b, c}, made.near[i], 0});
+    while (!parts.empty()) {
+      const PartOfMade part = parts.back();
+      parts.pop_back();
+      const auto& [x, y, z] = part.corners;
+      const TreeSlot near = find_near(source, (x + y + z) / 3.0, part.near, kNearMiddle * within).slot;
+      const TriangleCorners below = impl.corners(source.triangle_at(near));
+      if (is_within_of(below, part.corners, within)) continue;
+      if (part.divisions < kMostDivisions && longest_edge(part.corners) > kDivided * within &&
+          within > kShareOfSource * longest_edge(below)) {
+        const Vec3d xy = 0.5 * (x + y), yz = 0.5 * (y + z), zx = 0.5 * (z + x);
+        for (const TriangleCorners& corners : {TriangleCorners{x, xy, zx}, {xy, y, yz}, {zx, yz, z}, {xy, yz, zx}}) {
+          parts.push_back({corners, near, part.divisions + 1});
+        }
+        continue;
+      }
+      if (overlay.is_within(part.corners, source.triangle_at(near), within)) continue;
+      for (const Overlay::Far& far : overlay.far()) raise(far.distance);
+      is_searched = is_searched || !overlay.rest().empty();
+      for (const Overlay::Rest& rest : overlay.rest())
+        search.add_later(rest.corners, impl.place_of(rest.near), rest.bound);
+    }
+    searched += is_searched ? 1 : 0;
   }
   (void)search.run(kPartsOfMade * searched);
   raise(search.found().distance);
