@@ -18,6 +18,7 @@ import datetime
 import hashlib
 import json
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -42,6 +43,7 @@ class Table:
 ALL_DATA = [f"data/{name}" for name in DATA]
 TOOL, LIBRARY = "build/release/meshlode", "build/release/libmeshlode.so"
 TABLES = {
+    "picture": Table("README.md", ["bunny"], []),
     "accuracy": Table("README.md", MODELS, [], minutes=15),
     # Foliage is drawn as an aggregate, whose errors are of coverage.
     "brackets": Table("docs/explanation/errors.md", REAL + [name for name in ALL_DATA if "foliage" not in name], [], minutes=12),
@@ -166,7 +168,31 @@ def brackets_text(figures, about):
                        "largest lower bound / stored"], rows) + f"\n\nEvery cut; {about}."
 
 
-MEASURED = {"accuracy": (measure_accuracy, accuracy_text), "brackets": (measure_brackets, brackets_text)}
+PICTURE_ERRORS = [1, 4, 16]  # pixels
+
+
+def measure_picture(name, folder):
+    """Draws docs/pictures/lod-*.png; the triangles of each."""
+    asset, counts = Path(folder) / "asset.lode", {}
+    meshlode("build", scene_path(name), "-o", asset, "--quiet", "--no-settings-file")
+    for error in PICTURE_ERRORS:
+        printed = meshlode("render", asset, "-o", ROOT / f"docs/pictures/lod-{error}.png", "--size", "420x420", "--pixel-error", error,
+                           "--view", "clusters")
+        counts[str(error)] = int(re.search(r"(\d+) triangles", printed).group(1))
+    source = json.loads(meshlode("info", asset, "--format", "json"))["totals"]["source_triangles"]
+    return {"source": source, "drawn": counts}
+
+
+def picture_text(figures, about):
+    of = figures["bunny"]
+    images = " ".join(f'<img src="docs/pictures/lod-{e}.png" width="32%" alt="The bunny in {of["drawn"][str(e)]:,} triangles">'
+                      for e in PICTURE_ERRORS)
+    first, second, third = (f"{of['drawn'][str(e)]:,}" for e in PICTURE_ERRORS)
+    return (f"{images}\n*One asset at an error of 1, 4 and 16 pixels: {first}, {second} and {third} of {of['source']:,} triangles. "
+            "One colour per cluster.*")
+
+
+MEASURED = {"picture": (measure_picture, picture_text), "accuracy": (measure_accuracy, accuracy_text), "brackets": (measure_brackets, brackets_text)}
 
 
 def split_page(text, marker):
