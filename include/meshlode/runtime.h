@@ -28,6 +28,10 @@
 /// stable ABI before version 1 (docs/reference/compatibility.md).
 #pragma once
 
+#if !defined(_MSVC_LANG) && __cplusplus < 202002L
+#error "meshlode/runtime.h needs C++20 (-std=c++20)"
+#endif
+
 #include <array>
 #include <cstddef>
 #include <cstdint>

@@ -107,7 +107,7 @@ std::string version_text() {
   const std::string build_id = id ? to_hex(*id) : "unknown: " + id.error().message();
   append_format(text, "build id        %s\n", build_id.c_str());
   append_format(text, "compiler        %s\n", compiler());
-  append_format(text, "format version  %u\n", format::kVersion);
+  append_format(text, "format version  up to %u\n", format::kVersion);
   text += "\nlibrary         version          for\n";
   for (const LibraryVersion& library : list_libraries()) {
     append_format(text, "%-15s %-16s %s\n", library.name, library.version.c_str(), library.used_for);

@@ -343,7 +343,7 @@ class Viewer {
     }
     const isWhole = levels.every((level) => !level || level.absent === 0);
     const absent = isWhole ? [] : ['not in this page'];
-    fillTable(byId('levels'), ['level', 'clusters', 'triangles', 'fill', 'largest error', 'stuck clusters', ...absent],
+    fillTable(byId('levels'), ['level', 'clusters', 'triangles', 'fill', 'largest error', 'clusters of stuck groups', ...absent],
       Array.from(levels, (level, l) => level && [
         String(l), number(level.clusters), number(level.triangles),
         `${Math.round((100 * level.triangles) / (level.clusters * this.cap))}%`, short(level.error), number(level.stuck),
