@@ -170,8 +170,9 @@ Status match_level0(const PreparedMesh& mesh, const LodDag& dag, std::span<const
   }
   if (level0.triangles.size() != source.triangles.size()) return other;
 
-  const std::vector<std::uint32_t> sources = sorted(source.triangles, source_positions);
-  const std::vector<std::uint32_t> stored = sorted(level0.triangles, source_positions);
+  std::vector<std::uint32_t> sources, stored;
+  parallel_all([&] { sources = sorted(source.triangles, source_positions); },
+               [&] { stored = sorted(level0.triangles, source_positions); });
   form.level0_of_source.resize(sources.size());
   form.vertices_of_source.swap(source.triangles);  // positions there become vertices
   for (std::size_t i = 0; i < sources.size(); ++i) {

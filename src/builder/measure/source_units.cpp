@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "base/parallel.h"
+#include "base/release.h"
 #include "builder/measure/level_surface.h"
 
 namespace meshlode::builder {
@@ -16,6 +18,8 @@ namespace {
 /// the same within 5%. Its vertices are numbered in a byte.
 constexpr std::size_t kUnit = 64;
 static_assert(3 * kUnit <= 256);
+/// Of level 0, divided by one thread.
+constexpr std::size_t kClustersOfBlock = 64;
 
 /// Halves a cluster's triangles by the median along the longest side until they are units; calls add(unit).
 template <class Add>
@@ -52,50 +56,70 @@ SourceUnits::SourceUnits(const SourceTree::Impl& source, std::span<const std::ui
   std::partial_sum(first.begin(), first.end(), first.begin());
   std::vector<std::uint32_t> sorted(cluster_of.size()), next(first.begin(), first.end() - 1);
   for (std::uint32_t t = 0; t < cluster_of.size(); ++t) sorted[next[cluster_of[t]]++] = t;
+  first_unit_.assign(cluster_count + 1, 0);
+  std::vector<Block> blocks((cluster_count + kClustersOfBlock - 1) / kClustersOfBlock);
+  parallel_for_each_chunk(cluster_count, kClustersOfBlock, [&](std::size_t b, std::size_t begin, std::size_t end) {
+    for (std::size_t c = begin; c < end; ++c) {
+      if (first[c] < first[c + 1]) {
+        halve(std::span(sorted).subspan(first[c], first[c + 1] - first[c]), source, [&](std::span<std::uint32_t> unit) {
+          std::sort(unit.begin(), unit.end());
+          blocks[b].add_unit(source, unit);
+        });
+      }
+      first_unit_[c + 1] = static_cast<std::uint32_t>(blocks[b].units.size());  // of the block
+    }
+  });
   triangles_.reserve(cluster_of.size());
   vertices_.reserve(cluster_of.size());
-  first_unit_.assign(cluster_count + 1, 0);
-  for (std::size_t c = 0; c < cluster_count; ++c) {
-    first_unit_[c] = static_cast<std::uint32_t>(units_.size());
-    if (first[c] == first[c + 1]) continue;
-    halve(std::span(sorted).subspan(first[c], first[c + 1] - first[c]), source, [&](std::span<std::uint32_t> unit) {
-      std::sort(unit.begin(), unit.end());
-      add_unit(source, unit);
-    });
+  for (std::size_t b = 0; b < blocks.size(); ++b) {
+    const std::size_t end = std::min(cluster_count, (b + 1) * kClustersOfBlock);
+    for (std::size_t c = b * kClustersOfBlock; c < end; ++c)
+      first_unit_[c + 1] += static_cast<std::uint32_t>(units_.size());
+    append(std::move(blocks[b]));
   }
-  first_unit_[cluster_count] = static_cast<std::uint32_t>(units_.size());
   find_borders(source);
 }
 
-void SourceUnits::add_unit(const SourceTree::Impl& source, std::span<const std::uint32_t> triangles) {
+void SourceUnits::append(Block&& block) {
+  for (Unit& unit : block.units) {
+    unit.first_vertex += static_cast<std::uint32_t>(vertices_.size());
+    unit.first_triangle += static_cast<std::uint32_t>(triangles_.size());
+  }
+  units_.insert(units_.end(), block.units.begin(), block.units.end());
+  vertices_.insert(vertices_.end(), block.vertices.begin(), block.vertices.end());
+  triangles_.insert(triangles_.end(), block.triangles.begin(), block.triangles.end());
+  release(block.units, block.vertices, block.triangles);
+}
+
+void SourceUnits::Block::add_unit(const SourceTree::Impl& source, std::span<const std::uint32_t> triangles_of_unit) {
   Unit unit;
-  unit.first_vertex = static_cast<std::uint32_t>(vertices_.size());
-  unit.first_triangle = static_cast<std::uint32_t>(triangles_.size());
+  unit.first_vertex = static_cast<std::uint32_t>(vertices.size());
+  unit.first_triangle = static_cast<std::uint32_t>(triangles.size());
   Vec3d low(std::numeric_limits<double>::infinity()), high(-low);
-  for (const std::uint32_t t : triangles) {
+  for (const std::uint32_t t : triangles_of_unit) {
     Triangle triangle;
     triangle.id = t;
     const std::array<std::uint32_t, 3> ids = source.vertices(t);
     for (std::size_t k = 0; k < 3; ++k) {
-      const auto begin = vertices_.begin() + unit.first_vertex;
-      const auto at = std::find(begin, vertices_.end(), ids[k]);
+      const auto begin = vertices.begin() + unit.first_vertex;
+      const auto at = std::find(begin, vertices.end(), ids[k]);
       triangle.corner[k] = static_cast<std::uint8_t>(at - begin);
-      if (at == vertices_.end()) vertices_.push_back(ids[k]);
+      if (at == vertices.end()) vertices.push_back(ids[k]);
       low = glm::min(low, source.positions[ids[k]]);
       high = glm::max(high, source.positions[ids[k]]);
     }
-    triangles_.push_back(triangle);
+    triangles.push_back(triangle);
   }
-  unit.vertex_count = static_cast<std::uint32_t>(vertices_.size()) - unit.first_vertex;
-  unit.triangle_count = static_cast<std::uint32_t>(triangles.size());
+  unit.vertex_count = static_cast<std::uint32_t>(vertices.size()) - unit.first_vertex;
+  unit.triangle_count = static_cast<std::uint32_t>(triangles_of_unit.size());
   unit.center = low + 0.5 * (high - low);
   double radius2 = 0.0;
-  for (const std::uint32_t v : vertices(unit)) {
-    const Vec3d away = source.positions[v] - unit.center;
+  for (std::size_t v = unit.first_vertex; v < vertices.size(); ++v) {
+    const Vec3d away = source.positions[vertices[v]] - unit.center;
     radius2 = std::max(radius2, glm::dot(away, away));
   }
   unit.radius = std::sqrt(radius2) * (1.0 + 1e-9);
-  units_.push_back(unit);
+  units.push_back(unit);
 }
 
 void SourceUnits::find_borders(const SourceTree::Impl& source) {

@@ -45,13 +45,21 @@ class SourceUnits {
   [[nodiscard]] bool is_border(std::uint32_t vertex) const { return is_border_[vertex] != 0; }
 
  private:
-  void add_unit(const SourceTree::Impl& source, std::span<const std::uint32_t> triangles);
+  /// The units of some clusters, numbered from 0.
+  struct Block {
+    std::vector<Unit> units;
+    std::vector<std::uint32_t> vertices;
+    std::vector<Triangle> triangles;
+
+    void add_unit(const SourceTree::Impl& source, std::span<const std::uint32_t> triangles_of_unit);
+  };
+  void append(Block&& block);
   void find_borders(const SourceTree::Impl& source);
 
   std::vector<Unit> units_;
   std::vector<std::uint32_t> vertices_;
   std::vector<Triangle> triangles_;
-  std::vector<std::uint32_t> first_unit_;
+  std::vector<std::uint32_t> first_unit_;  ///< per cluster, and the end
   std::vector<std::uint8_t> is_border_;
 };
 
