@@ -7,6 +7,7 @@ import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'nod
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { pathToFileURL } from 'node:url';
+import { checkHead } from './head_checks.mjs';
 
 const [, , folder, writeDecoded, writeBroken, meshlode, storeBy, data] = process.argv;
 const { loadRuntime, MeshlodeError } = await import(pathToFileURL(join(folder, 'index.js')));
@@ -227,6 +228,9 @@ try {
       return error.status;
     }
   };
+  for (const name of ['rock.strips', 'city.none', 'foliage.strips']) {
+    checkHead({ runtime, file: readFileSync(join(work, `${name}.lode`)), name, expect, refused });
+  }
   expect(refused(() => asset.decodeFloats(1e6)) === 'usage', 'a cluster that is not there');
   expect(refused(() => asset.loadPage(1e6)) === 'usage', 'a page that is not there');
   expect(refused(() => asset.selectUniform(0, NaN)) === 'usage', 'an error that is no number');

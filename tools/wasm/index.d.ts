@@ -116,6 +116,20 @@ export interface Page {
   clusterCount: number;
 }
 
+/** An image or buffer of the source, as it was. */
+export interface AssetBlob {
+  name: string;
+  /** Such as "image/png". */
+  mimeType: string;
+  /** From the start of the file. */
+  offset: number;
+  bytes: number;
+  /** 1 image, 2 buffer. */
+  kind: number;
+  /** In the glTF's images or buffers. */
+  sourceIndex: number;
+}
+
 export interface View {
   /** World space; of a perspective view. */
   eye?: Triple;
@@ -147,6 +161,30 @@ export interface DecodedIntegers {
   triangleMaterials: Uint32Array;
 }
 
+/** Instances and clusters of a cut, of equal length, ascending by instance and cluster. */
+export interface Cut {
+  instances: Uint32Array;
+  clusters: Uint32Array;
+}
+
+/** Six planes a, b, c, d: a point is inside where a x + b y + c z + d >= 0 for each; one of zeros has everything inside. */
+export type Frustum = ArrayLike<number>;
+
+/** Chooses what to draw of what is resident, and says what to load. To be closed before its asset. */
+export interface Selector {
+  /**
+   * Page p is resident where bit p % 32 of word p / 32 is set. What is drawn covers each piece of each instance's surface once where
+   * the pages of terminal groups are resident, as finely as resident pages allow.
+   */
+  select(view: View, pixelError: number, resident: Uint32Array, frustum?: Frustum | null): Cut;
+  /** Of the last selection: pages that it lacks, by falling priority, each behind those that it is of no use without. */
+  readonly requests: { pages: Uint32Array; priorities: Float32Array };
+  /** Of the last selection, of each page: what is lost without it, in pixels; 0: nothing; INFINITE_ERROR: keep it always. */
+  readonly pagePriorities: Float32Array;
+  close(): void;
+}
+
+/** Tables are read when they are first wanted. */
 export interface Asset {
   readonly meshes: Mesh[];
   readonly materials: Material[];
@@ -154,6 +192,7 @@ export interface Asset {
   readonly groups: Group[];
   readonly clusters: Cluster[];
   readonly pages: Page[];
+  readonly blobs: AssetBlob[];
   /** Text of the asset as JSON, which opening does not check: throws MeshlodeError `invalid` where it is none; `scene` too. */
   readonly meta: unknown;
   readonly scene: unknown;
@@ -165,22 +204,44 @@ export interface Asset {
    */
   choosePromise(promise: PromiseKind): void;
   selectUniform(mesh: number, maxError: number): { clusters: Uint32Array; storedError: number };
-  selectView(view: View, pixelError: number): { instances: Uint32Array; clusters: Uint32Array };
+  selectView(view: View, pixelError: number, frustum?: Frustum | null): Cut;
+  /** The view volume: four sides and the plane through the eye; `aspect` is width over height. */
+  makeFrustum(view: View, target: Triple, up: Triple, aspect: number): Float64Array;
+  createSelector(): Selector;
   pageOf(cluster: number): number;
+  /** NONE if there is no such cluster. */
+  meshOf(cluster: number): number;
+  /** The most vertices and triangles of any cluster. */
+  largestCluster(): { vertices: number; triangles: number };
   pageDependencies(page: number): Uint32Array;
   streamingOrder(): Uint32Array;
   /** Errors: invalid, where the page is broken; unsupported, where its codec is not none or strips. */
   loadPage(page: number): void;
+  /** loadPage from bytes of the caller, those of the page's `offset` and `storedBytes`. Errors: also usage, for another number. */
+  unpackPage(page: number, stored: Uint8Array): void;
   dropPage(page: number): void;
-  /** Loads the cluster's page where it is not loaded. */
+  /** Loads the cluster's page where it is not loaded; of a head it must be. */
   decodeFloats(cluster: number): DecodedFloats;
   decodeIntegers(cluster: number): DecodedIntegers;
+  /** A copy; empty if there is no such blob, or of a head. */
+  blobBytes(blob: number): Uint8Array;
+  /** Throws where bytes of the caller are not the blob's. */
+  checkBlob(blob: number, bytes: Uint8Array): void;
+  /** The glTF image of a glTF texture, and the blob that is a glTF image; NONE where there is none. */
+  imageOfTexture(texture: number): number;
+  blobOfImage(image: number): number;
   close(): void;
 }
 
 export interface Runtime {
   readonly formatVersion: number;
+  /** Of the module, which never shrinks. */
+  readonly memoryBytes: number;
   open(bytes: Uint8Array): Asset;
+  /** How many of a file's first bytes openHead needs. Not known: `bytes` of them are needed to say it. */
+  headBytes(first: Uint8Array, fileBytes: number): { bytes: number; isKnown: boolean };
+  /** Opens an asset by its head; pages and images are the caller's to read: unpackPage, checkBlob. */
+  openHead(bytes: Uint8Array, fileBytes: number): Asset;
 }
 
 export function loadRuntime(source?: BufferSource | WebAssembly.Module): Promise<Runtime>;

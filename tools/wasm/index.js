@@ -32,7 +32,7 @@ export class MeshlodeError extends Error {
  * A runtime that threw anything but a MeshlodeError (a trap: memory that could not be had) must not be used again.
  */
 export async function loadRuntime(source) {
-  const bytes = source ?? (await readBeside('meshlode.wasm'));
+  const bytes = source ?? (await readModule());
   const module = bytes instanceof WebAssembly.Module ? bytes : await WebAssembly.compile(bytes);
   // libc may name functions of WASI that it never calls here; whoever calls one is told that there is no such thing.
   const imports = {};
@@ -45,10 +45,11 @@ export async function loadRuntime(source) {
   return new Runtime(instance.exports);
 }
 
-async function readBeside(name) {
-  const place = new URL(name, import.meta.url);
+/** Written out: bundlers find the file by these words. */
+async function readModule() {
+  const place = new URL('./meshlode.wasm', import.meta.url);
   if (place.protocol !== 'file:') return new Uint8Array(await (await fetch(place)).arrayBuffer());
-  const { readFile } = await import('node:fs/promises');
+  const { readFile } = await import(/* webpackIgnore: true */ /* @vite-ignore */ 'node:fs/promises');
   return readFile(place);
 }
 
@@ -66,13 +67,44 @@ class Runtime {
     return this.#wasm.meshlode_format_version();
   }
 
+  /** Of the module, which never shrinks. */
+  get memoryBytes() {
+    return this.#wasm.memory.buffer.byteLength;
+  }
+
   /** Opens an asset whose bytes are copied into the module. */
   open(bytes) {
+    return this.#open(bytes, (at, asset, error) => this.#wasm.meshlode_open_buffer(at, bytes.byteLength, asset, error));
+  }
+
+  /** How many of a file's first bytes openHead() needs: {bytes, isKnown}. Not known: `bytes` of them are needed to say it. */
+  headBytes(first, fileBytes) {
+    const frame = new Frame(this, 8 + ERROR_BYTES + first.byteLength);
+    try {
+      const at = frame.at + 8 + ERROR_BYTES;
+      this.bytes(at, first.byteLength).set(first);
+      const status = this.#wasm.meshlode_head_bytes(at, first.byteLength, BigInt(fileBytes), frame.at, frame.at + 8);
+      if (status !== 0 && STATUS[status] !== 'too_small') throw this.errorAt(status, frame.at + 8);
+      return { bytes: uint64(this.view(), frame.at), isKnown: status === 0 };
+    } finally {
+      frame.end();
+    }
+  }
+
+  /** Opens an asset by the first bytes of its file, as many as headBytes() says or more. Pages and images are the caller's to read. */
+  openHead(bytes, fileBytes) {
+    const size = bytes.byteLength;
+    return this.#open(bytes, (at, asset, error) =>
+      this.#wasm.meshlode_open_head(at, size, BigInt(fileBytes), asset, error),
+    );
+  }
+
+  #open(bytes, call) {
     const start = this.allocate(bytes.byteLength);
     this.bytes(start, bytes.byteLength).set(bytes);
     const frame = new Frame(this, 4 + ERROR_BYTES);
     try {
-      const status = this.#wasm.meshlode_open_buffer(start, bytes.byteLength, frame.at, frame.at + 4);
+      const status = call(start, frame.at, frame.at + 4);
       if (status !== 0) {
         const error = this.errorAt(status, frame.at + 4);
         this.release(start);
@@ -124,6 +156,31 @@ function decodeText(bytes) {
   return new TextDecoder('utf-8', { ignoreBOM: true }).decode(bytes.slice());
 }
 
+/** Memory of a view (64 bytes) and, 64 behind it, of a frustum (192 bytes): what selections read. */
+const VIEW_BYTES = 256;
+function putView(runtime, at, view, frustum) {
+  const to = runtime.view();
+  (view.eye ?? [0, 0, 0]).forEach((value, i) => to.setFloat64(at + 8 * i, value, true));
+  to.setInt32(at + 24, view.isOrthographic ? 1 : 0, true);
+  to.setFloat64(at + 32, view.fovyRadians ?? 0, true);
+  to.setFloat64(at + 40, view.orthoHeight ?? 0, true);
+  to.setFloat64(at + 48, view.nearDistance, true);
+  to.setUint32(at + 56, view.heightPx, true);
+  for (let i = 0; frustum && i < 24; ++i) to.setFloat64(at + 64 + 8 * i, frustum[i], true);
+}
+
+/** Pairs of 32 bits as two arrays of their own; `Second`: type of the second ones. */
+function readPairs(runtime, at, count, Second = Uint32Array) {
+  const words = new Uint32Array(runtime.bytes(at, 8 * count).slice().buffer);
+  const seconds = new Second(words.buffer);
+  const out = [new Uint32Array(count), new Second(count)];
+  for (let i = 0; i < count; ++i) {
+    out[0][i] = words[2 * i];
+    out[1][i] = seconds[2 * i + 1];
+  }
+  return out;
+}
+
 /** A number of 64 bits; counts and offsets of a file are far below 2^53. */
 function uint64(view, at) {
   return view.getUint32(at, true) + view.getUint32(at + 4, true) * 2 ** 32;
@@ -137,17 +194,41 @@ class Asset {
   #pages = new Map(); // page -> address of its decoded bytes
   #promise = PROMISES[0];
   #cluster = 0; // memory for one decoded cluster, made when it is first wanted
+  #tables = {}; // made when they are first wanted: an asset may have millions of clusters
 
   constructor(runtime, wasm, at, bytes) {
     this.#runtime = runtime;
     this.#wasm = wasm;
     this.#at = at;
     this.#bytes = bytes;
-    this.#readPromised();
-    this.materials = this.#records('materials', 48, (v, p) => this.#material(v, p));
-    this.instances = this.#records('instances', 128, (v, p) => this.#instance(v, p));
-    this.pages = this.#records('pages', 64, readPage);
-    this.clusters = this.#records('clusters', 24, readCluster);
+  }
+
+  get meshes() {
+    return (this.#tables.meshes ??= this.#records('meshes', 200, (v, p) => this.#mesh(v, p)));
+  }
+  get materials() {
+    return (this.#tables.materials ??= this.#records('materials', 48, (v, p) => this.#material(v, p)));
+  }
+  get instances() {
+    return (this.#tables.instances ??= this.#records('instances', 128, (v, p) => this.#instance(v, p)));
+  }
+  get groups() {
+    return (this.#tables.groups ??= this.#records('groups', 56, readGroup));
+  }
+  get clusters() {
+    return (this.#tables.clusters ??= this.#records('clusters', 24, readCluster));
+  }
+  get pages() {
+    return (this.#tables.pages ??= this.#records('pages', 64, readPage));
+  }
+  /** Images and buffers of the source, as it had them. */
+  get blobs() {
+    return (this.#tables.blobs ??= this.#records('blobs', 48, (v, p) => this.#blob(v, p)));
+  }
+  /** The mesh that a cluster is of; NONE if there is no such cluster. */
+  meshOf(cluster) {
+    const one = this.#record('clusters', 24, cluster, readCluster);
+    return one ? this.#record('groups', 56, one.coarserGroup, readGroup).mesh : NONE;
   }
 
   /** Frees the asset; nothing of it may be used afterwards. */
@@ -183,7 +264,7 @@ class Asset {
       const number = PROMISES.indexOf(promise) >>> 0;
       this.#check(this.#wasm.meshlode_choose_promise(this.#at, number, frame.at), frame.at);
       this.#promise = promise;
-      this.#readPromised();
+      this.#tables.meshes = this.#tables.groups = undefined;
     } finally {
       frame.end();
     }
@@ -207,36 +288,52 @@ class Asset {
     }
   }
 
-  /** What a camera needs, ascending by instance and cluster: {instances, clusters}, of equal length. */
-  selectView(view, pixelError) {
-    const head = 64 + 8 + ERROR_BYTES;
-    let capacity = this.clusters.length + this.instances.length;
+  /**
+   * What a camera needs, ascending by instance and cluster: {instances, clusters}, of equal length. `frustum`: 24 numbers, six
+   * planes as makeFrustum() returns them; left out, nothing is culled.
+   */
+  selectView(view, pixelError, frustum) {
+    const head = VIEW_BYTES + 8 + ERROR_BYTES;
+    let capacity = this.#count('clusters') + this.#count('instances');
     for (;;) {
       const frame = new Frame(this.#runtime, head + 8 * capacity);
       try {
-        this.#putView(frame.at, view);
-        const error = frame.at + 72;
-        const status = this.#wasm.meshlode_select_view(
-          this.#at, frame.at, pixelError, frame.at + head, capacity, frame.at + 64, error,
+        putView(this.#runtime, frame.at, view, frustum);
+        const count = frame.at + VIEW_BYTES;
+        const status = this.#wasm.meshlode_select_frustum(
+          this.#at, frame.at, frustum ? frame.at + 64 : 0, pixelError, frame.at + head, capacity, count, count + 8,
         );
-        const count = this.#runtime.view().getUint32(frame.at + 64, true);
+        const found = this.#runtime.view().getUint32(count, true);
         if (STATUS[status] === 'too_small') {
-          capacity = count; // more instances than there are clusters
+          capacity = found; // more instances than there are clusters
           continue;
         }
-        this.#check(status, error);
-        const pairs = this.#uints(frame.at + head, 2 * count);
-        const instances = new Uint32Array(count);
-        const clusters = new Uint32Array(count);
-        for (let i = 0; i < count; ++i) {
-          instances[i] = pairs[2 * i];
-          clusters[i] = pairs[2 * i + 1];
-        }
+        this.#check(status, count + 8);
+        const [instances, clusters] = readPairs(this.#runtime, frame.at + head, found);
         return { instances, clusters };
       } finally {
         frame.end();
       }
     }
+  }
+
+  /** The view volume of a view that looks at `target`; `aspect` is width over height. */
+  makeFrustum(view, target, up, aspect) {
+    const frame = new Frame(this.#runtime, VIEW_BYTES + 48 + ERROR_BYTES);
+    try {
+      putView(this.#runtime, frame.at, view);
+      const at = frame.at + VIEW_BYTES;
+      [...target, ...up].forEach((value, i) => this.#runtime.view().setFloat64(at + 8 * i, value, true));
+      this.#check(this.#wasm.meshlode_make_frustum(frame.at, at, at + 24, aspect, frame.at + 64, at + 48), at + 48);
+      return new Float64Array(this.#runtime.bytes(frame.at + 64, 192).slice().buffer);
+    } finally {
+      frame.end();
+    }
+  }
+
+  /** What selects with only some pages resident. To be closed before the asset. */
+  createSelector() {
+    return new Selector(this.#runtime, this.#wasm, this.#at, this.#count('pages'));
   }
 
   /** The page that holds a cluster. */
@@ -267,20 +364,28 @@ class Asset {
     }
   }
 
-  /** Unpacks and checks a page, and keeps it in the module until dropPage(). */
+  /** Unpacks and checks a page, and keeps it in the module until dropPage(). Of a head: unpackPage(). */
   loadPage(page) {
+    this.#keepPage(page, new Uint8Array(0), (from, at, size, error) =>
+      this.#wasm.meshlode_load_page(this.#at, page, at, size, error),
+    );
+  }
+  /** The same from bytes that the caller read, those of the page's `offset` and `storedBytes`. */
+  unpackPage(page, stored) {
+    this.#keepPage(page, stored, (from, at, size, error) =>
+      this.#wasm.meshlode_unpack_page(this.#at, page, from, stored.byteLength, at, size, error),
+    );
+  }
+  #keepPage(page, stored, call) {
     if (this.#pages.has(page)) return;
-    const frame = new Frame(this.#runtime, ERROR_BYTES);
     const size = this.pages[page]?.bytes ?? 0;
     const at = this.#runtime.allocate(size);
     try {
-      this.#check(this.#wasm.meshlode_load_page(this.#at, page, at, size, frame.at), frame.at);
+      this.#withBytes(stored, (from, error) => call(from, at, size, error));
       this.#pages.set(page, at);
     } catch (error) {
       this.#runtime.release(at);
       throw error;
-    } finally {
-      frame.end();
     }
   }
   dropPage(page) {
@@ -290,10 +395,47 @@ class Asset {
     this.#runtime.release(at);
   }
 
+  /** A copy of a blob's bytes; empty if there is no such blob, or of a head. */
+  blobBytes(blob) {
+    const frame = new Frame(this.#runtime, 4);
+    try {
+      const at = this.#wasm.meshlode_blob_bytes(this.#at, blob, frame.at) >>> 0;
+      return this.#runtime.bytes(at, this.#runtime.view().getUint32(frame.at, true)).slice();
+    } finally {
+      frame.end();
+    }
+  }
+  /** Throws where bytes that the caller read, those of the blob's `offset` and `bytes`, are not the blob's. */
+  checkBlob(blob, bytes) {
+    this.#withBytes(bytes, (from, error) =>
+      this.#wasm.meshlode_check_blob(this.#at, blob, from, bytes.byteLength, error),
+    );
+  }
+  /** The glTF image of a glTF texture, and the blob that is a glTF image; NONE where there is none. */
+  imageOfTexture(texture) {
+    return this.#wasm.meshlode_image_of_texture(this.#at, texture) >>> 0;
+  }
+  blobOfImage(image) {
+    return this.#wasm.meshlode_blob_of_image(this.#at, image) >>> 0;
+  }
+
+  /** The most vertices and triangles of any cluster: what a pool of equal slots has to hold. */
+  largestCluster() {
+    const at = this.#table('clusters');
+    const bytes = this.#runtime.bytes(at, 24 * this.#count('clusters'));
+    let vertices = 0;
+    let triangles = 0;
+    for (let i = 20; i < bytes.length; i += 24) {
+      vertices = Math.max(vertices, bytes[i] + 1);
+      triangles = Math.max(triangles, bytes[i + 1] + 1);
+    }
+    return { vertices, triangles };
+  }
+
   /** Copies of a cluster's floats: positions (relative to the mesh's origin), normals, uvs, colors, triangles, materials. */
   decodeFloats(cluster) {
     const page = this.pageOf(cluster);
-    const mesh = this.meshes[this.groups[this.clusters[cluster]?.coarserGroup]?.mesh];
+    const mesh = this.meshes[this.meshOf(cluster)];
     const { at, arrays } = this.#prepare(cluster, page);
     const view = this.#runtime.view();
     view.setUint32(at, MAX_CLUSTER, true);
@@ -369,9 +511,15 @@ class Asset {
     return { at, arrays };
   }
 
-  #readPromised() {
-    this.meshes = this.#records('meshes', 200, (v, p) => this.#mesh(v, p));
-    this.groups = this.#records('groups', 56, readGroup);
+  /** Calls with the address of a copy of the bytes and of an error, and throws that. */
+  #withBytes(bytes, call) {
+    const frame = new Frame(this.#runtime, ERROR_BYTES + bytes.byteLength);
+    try {
+      this.#runtime.bytes(frame.at + ERROR_BYTES, bytes.byteLength).set(bytes);
+      this.#check(call(frame.at + ERROR_BYTES, frame.at), frame.at);
+    } finally {
+      frame.end();
+    }
   }
 
   #check(status, errorAt) {
@@ -384,18 +532,31 @@ class Asset {
     return new Float32Array(this.#runtime.bytes(at, 4 * count).slice().buffer);
   }
 
-  #records(name, size, read) {
+  /** The address of a table, which stays; `count` is stored where that is wanted. */
+  #table(name, store = () => {}) {
     const frame = new Frame(this.#runtime, 4);
     try {
       const at = this.#wasm[`meshlode_${name}`](this.#at, frame.at) >>> 0;
-      const count = this.#runtime.view().getUint32(frame.at, true);
-      const out = new Array(count);
-      // A reader may ask the module for texts, and its memory may then move: the view is asked for each time.
-      for (let i = 0; i < count; ++i) out[i] = read(this.#runtime.view(), at + size * i);
-      return out;
+      store(this.#runtime.view().getUint32(frame.at, true));
+      return at;
     } finally {
       frame.end();
     }
+  }
+  #count(name) {
+    let count = 0;
+    this.#table(name, (value) => (count = value));
+    return count;
+  }
+  #records(name, size, read) {
+    const out = new Array(this.#count(name));
+    const at = this.#table(name);
+    // A reader may ask the module for texts, and its memory may then move: the view is asked for each time.
+    for (let i = 0; i < out.length; ++i) out[i] = read(this.#runtime.view(), at + size * i);
+    return out;
+  }
+  #record(name, size, index, read) {
+    return index < this.#count(name) ? read(this.#runtime.view(), this.#table(name) + size * index) : undefined;
   }
 
   #text(view, at) {
@@ -425,16 +586,6 @@ class Asset {
     } finally {
       frame.end();
     }
-  }
-
-  #putView(at, view) {
-    const to = this.#runtime.view();
-    (view.eye ?? [0, 0, 0]).forEach((value, i) => to.setFloat64(at + 8 * i, value, true));
-    to.setInt32(at + 24, view.isOrthographic ? 1 : 0, true);
-    to.setFloat64(at + 32, view.fovyRadians ?? 0, true);
-    to.setFloat64(at + 40, view.orthoHeight ?? 0, true);
-    to.setFloat64(at + 48, view.nearDistance, true);
-    to.setUint32(at + 56, view.heightPx, true);
   }
 
   #mesh(view, at) {
@@ -483,6 +634,17 @@ class Asset {
     return { name: this.#text(view, at), ...material };
   }
 
+  #blob(view, at) {
+    const blob = {
+      mimeType: this.#text(view, at + 8),
+      offset: uint64(this.#runtime.view(), at + 16),
+      bytes: uint64(this.#runtime.view(), at + 24),
+      kind: this.#runtime.view().getUint32(at + 32, true),
+      sourceIndex: this.#runtime.view().getUint32(at + 36, true),
+    };
+    return { name: this.#text(this.#runtime.view(), at), ...blob };
+  }
+
   #instance(view, at) {
     const transform = new Float64Array(12);
     for (let k = 0; k < 12; ++k) transform[k] = view.getFloat64(at + 8 * k, true);
@@ -494,6 +656,80 @@ class Asset {
       flags: view.getUint32(at + 112, true),
     };
     return { name: this.#text(view, at + 120), ...instance };
+  }
+}
+
+/** Chooses what to draw of what is loaded, and says what to load. */
+class Selector {
+  #runtime;
+  #wasm;
+  #at;
+  #fixed; // view, frustum, count, error, words of pages
+  #words;
+  #items;
+  #capacity = 1024; // grows to what a view needs
+
+  constructor(runtime, wasm, asset, pageCount) {
+    this.#runtime = runtime;
+    this.#wasm = wasm;
+    this.#words = Math.ceil(pageCount / 32);
+    this.#fixed = runtime.allocate(VIEW_BYTES + 8 + ERROR_BYTES + 4 * this.#words);
+    this.#items = runtime.allocate(8 * this.#capacity);
+    const error = this.#fixed + 8;
+    const status = wasm.meshlode_create_selector(asset, this.#fixed, error);
+    if (status !== 0) throw runtime.errorAt(status, error);
+    this.#at = runtime.view().getUint32(this.#fixed, true);
+  }
+
+  /**
+   * What to draw with the pages whose bits are set in `resident` (page p: bit p % 32 of word p / 32), ascending by instance and
+   * cluster: {instances, clusters}.
+   */
+  select(view, pixelError, resident, frustum) {
+    const count = this.#fixed + VIEW_BYTES;
+    const words = count + 8 + ERROR_BYTES;
+    for (;;) {
+      putView(this.#runtime, this.#fixed, view, frustum);
+      const padded = new Uint32Array(this.#words);
+      padded.set(resident.subarray(0, this.#words));
+      this.#runtime.bytes(words, padded.byteLength).set(new Uint8Array(padded.buffer));
+      const status = this.#wasm.meshlode_select_resident(
+        this.#at, this.#fixed, frustum ? this.#fixed + 64 : 0, pixelError, words, this.#items, this.#capacity, count, count + 8,
+      );
+      const found = this.#runtime.view().getUint32(count, true);
+      if (STATUS[status] === 'too_small') {
+        this.#runtime.release(this.#items);
+        this.#items = 0;
+        this.#items = this.#runtime.allocate(8 * 2 * found);
+        this.#capacity = 2 * found;
+        continue;
+      }
+      if (status !== 0) throw this.#runtime.errorAt(status, count + 8);
+      const [instances, clusters] = readPairs(this.#runtime, this.#items, found);
+      return { instances, clusters };
+    }
+  }
+
+  /** Of the last selection: pages that it lacks, by falling priority, each behind those that it is of no use without. */
+  get requests() {
+    const at = this.#wasm.meshlode_page_requests(this.#at, this.#fixed) >>> 0;
+    const count = this.#runtime.view().getUint32(this.#fixed, true);
+    const [pages, priorities] = readPairs(this.#runtime, at, count, Float32Array);
+    return { pages, priorities };
+  }
+  /** Of the last selection, of each page: what is lost without it, in pixels; 0: nothing; INFINITE_ERROR: keep it always. */
+  get pagePriorities() {
+    const at = this.#wasm.meshlode_page_priorities(this.#at, this.#fixed) >>> 0;
+    const count = this.#runtime.view().getUint32(this.#fixed, true);
+    return new Float32Array(this.#runtime.bytes(at, 4 * count).slice().buffer);
+  }
+
+  close() {
+    if (this.#at === 0) return;
+    this.#wasm.meshlode_destroy_selector(this.#at);
+    this.#runtime.release(this.#fixed);
+    this.#runtime.release(this.#items);
+    this.#at = this.#fixed = this.#items = 0;
   }
 }
 
