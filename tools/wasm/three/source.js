@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: MIT
+// Ranges of a file, over HTTP or of a Blob. Errors name the range.
+
+/** An error with its place: a range of a file, or what was read from it. */
+export class LodeError extends Error {
+  constructor(place, reason) {
+    super(`${place}: ${reason}`);
+    Object.assign(this, { name: 'LodeError', place, reason });
+  }
+}
+
+const ATTEMPTS = 3; // a dropped connection, a server that restarts; more attempts delay the error
+const WAIT_MS = 400; // before the second attempt, four times as long before the third: two seconds in all
+const STEP_BYTES = 65536; // due within each time limit: 2 kB/s at 30 s, below which a picture never comes
+const WHOLE_LIMIT = 2 ** 31; // of a file without ranges: a tab has no memory for more beside what it draws
+
+export class RangeSource {
+  bytesRead = 0;
+  requests = 0;
+  fileBytes = null; // null before the first read, and where another origin hides Content-Range
+  #file;
+  #options;
+  #whole = null;
+  #first = new Uint8Array(0); // bytes of the first read: part of the head, and of pages behind it in a small file
+
+  /** `file`: an address or a Blob. Options: headers, credentials, timeoutMs. */
+  constructor(file, options) {
+    this.#file = file;
+    this.#options = options;
+    // A Blob's slices are read as ranges are.
+    if (file instanceof Blob) [this.#whole, this.fileBytes] = [file, file.size];
+  }
+
+  /** The bytes [offset, offset + count). `isFirst`: fewer, where the file is shorter. */
+  async read(offset, count, isFirst = false) {
+    if (offset < this.#first.length && !isFirst) {
+      const have = this.#first.subarray(offset, offset + count);
+      if (have.length === count) return have;
+      const bytes = new Uint8Array(count);
+      bytes.set(await this.read(offset + have.length, count - have.length), have.length);
+      bytes.set(have);
+      return bytes;
+    }
+    const place = `bytes ${offset} to ${offset + count - 1}`;
+    for (let attempt = 1; ; ++attempt) {
+      try {
+        const bytes = await this.#readOnce(offset, count, isFirst, place);
+        if (isFirst) this.#first = bytes;
+        return bytes;
+      } catch (error) {
+        if (error.isFinal || attempt === ATTEMPTS) throw error instanceof LodeError ? error : new LodeError(place, error.message);
+        await new Promise((done) => setTimeout(done, WAIT_MS * 4 ** (attempt - 1)));
+      }
+    }
+  }
+
+  async #readOnce(offset, count, isFirst, place) {
+    const fail = (message, isFinal = false) => {
+      throw Object.assign(new LodeError(place, message), { isFinal });
+    };
+    if (this.#whole) {
+      const end = Math.min(offset + count, this.fileBytes);
+      if (!isFirst && end < offset + count) fail(`the file has ${this.fileBytes} bytes`, true);
+      if (!(this.#whole instanceof Blob)) return this.#whole.subarray(offset, end);
+      this.bytesRead += end - offset;
+      return new Uint8Array(await this.#whole.slice(offset, end).arrayBuffer());
+    }
+    const abort = new AbortController();
+    const limit = this.#options.timeoutMs;
+    let timer = 0;
+    const arm = () => {
+      clearTimeout(timer);
+      timer = setTimeout(() => abort.abort(new Error(`too slow: less than ${STEP_BYTES} bytes within ${limit} ms`)), limit);
+    };
+    arm();
+    try {
+      ++this.requests;
+      const { headers, credentials } = this.#options;
+      const asked = { ...headers, Range: `bytes=${offset}-${offset + count - 1}` };
+      const response = await fetch(this.#file, { headers: asked, credentials, signal: abort.signal });
+      const { status } = response;
+      // Another attempt helps with time-outs, limits of requests and faults of the server.
+      if (status !== 200 && status !== 206) fail(`the server answers ${status}`, status < 500 && status !== 408 && status !== 429);
+      if (status === 200) {
+        const whole = await this.#body(response, WHOLE_LIMIT, arm, fail);
+        const said = Number(response.headers.get('Content-Length') ?? whole.length);
+        if (!response.headers.has('Content-Encoding') && said !== whole.length) fail(`${whole.length} of ${said} bytes came`);
+        this.#setSize(whole.length, fail);
+        this.#whole = whole;
+        return this.#readOnce(offset, count, isFirst, place);
+      }
+      this.#checkRange(response, offset, count, isFirst, fail);
+      const bytes = await this.#body(response, count, arm, fail);
+      const due = Math.min(count, (this.fileBytes ?? Infinity) - offset);
+      if (bytes.length < due && !(isFirst && this.fileBytes === null)) fail(`only ${bytes.length} bytes came`);
+      return bytes;
+    } catch (error) {
+      throw abort.signal.aborted && abort.signal.reason instanceof Error ? abort.signal.reason : error;
+    } finally {
+      clearTimeout(timer);
+      abort.abort(); // ends a body that is too long
+    }
+  }
+
+  /** Content-Range, where this origin may see it. */
+  #checkRange(response, offset, count, isFirst, fail) {
+    const said = response.headers.get('Content-Range');
+    if (said === null) return;
+    const [, first, last, total] = (/^bytes (\d+)-(\d+)\/(\d+|\*)$/.exec(said) ?? []).map(Number);
+    const end = Number.isFinite(total) ? Math.min(offset + count, total) : offset + count;
+    if (first !== offset || last + 1 !== end || (end < offset + count && !isFirst)) fail(`the server sends ${said}`, true);
+    if (Number.isFinite(total)) this.#setSize(total, fail);
+  }
+
+  /** A body of at most `limit` bytes. */
+  async #body(response, limit, arm, fail) {
+    const parts = [];
+    let size = 0;
+    let armed = 0;
+    const reader = response.body.getReader();
+    for (let { value, done } = await reader.read(); !done; { value, done } = await reader.read()) {
+      parts.push(value);
+      size += value.length;
+      this.bytesRead += value.length;
+      if (size > limit) fail('more bytes came than were asked for', true);
+      if (size - armed < STEP_BYTES) continue;
+      armed = size;
+      arm();
+    }
+    return new Uint8Array(await new Blob(parts).arrayBuffer());
+  }
+
+  #setSize(total, fail) {
+    if (this.fileBytes !== null && total !== this.fileBytes) fail(`the file had ${this.fileBytes} bytes and has ${total}`, true);
+    this.fileBytes = total;
+  }
+}
