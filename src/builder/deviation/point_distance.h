@@ -14,6 +14,10 @@ namespace meshlode::builder {
 
 using TriangleCorners = std::array<Vec3d, 3>;
 
+[[nodiscard]] inline double longest_edge(const TriangleCorners& c) {
+  return std::max(glm::distance(c[0], c[1]), std::max(glm::distance(c[1], c[2]), glm::distance(c[2], c[0])));
+}
+
 [[nodiscard]] inline double point_segment_distance2(const Vec3d& pa, const Vec3d& edge) {
   const double length2 = glm::dot(edge, edge);
   const double along = glm::dot(pa, edge);

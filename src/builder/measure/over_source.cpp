@@ -40,10 +40,6 @@ constexpr std::uint32_t kMostDivisions = 6;
 /// For the middle of a part any triangle so near will do, as a share of what is known.
 constexpr double kNearMiddle = 0.25;
 
-double longest_edge(const TriangleCorners& c) {
-  return std::max(glm::distance(c[0], c[1]), std::max(glm::distance(c[1], c[2]), glm::distance(c[2], c[0])));
-}
-
 struct PartOfMade {
   TriangleCorners corners;
   TreeSlot near;

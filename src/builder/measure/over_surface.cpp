@@ -21,12 +21,8 @@ constexpr std::size_t kMostPiecesOfUnit = 48;
 constexpr std::size_t kPartsOfShared = 256;
 /// Parts of one chunk: stacks of sheets have thousands of triangles that lie over many others.
 constexpr std::size_t kMostPartsOfChunk = 4096;
-
-float longest_edge(const TriangleCorners& corners) {
-  const auto [a, b, c] = corners;
-  const double longest2 = std::max(glm::dot(b - a, b - a), std::max(glm::dot(c - b, c - b), glm::dot(a - c, a - c)));
-  return static_cast<float>(std::sqrt(longest2) * (1.0 + 1e-6));
-}
+/// More than a distance in floats is off by.
+constexpr double kSlack = 1e-6;
 
 }  // namespace
 
@@ -128,7 +124,7 @@ void LevelMeter::check_units(const LevelSurface& surface, UnitChunk& chunk, std:
       }
       const float nearest = std::min(n[0].distance, std::min(n[1].distance, n[2].distance));
       if (k[0] == k[1] && k[1] == k[2]) continue;
-      if (static_cast<double>(nearest) + static_cast<double>(longest_edge(corners)) <= within) continue;
+      if (static_cast<double>(nearest) + (1.0 + kSlack) * longest_edge(corners) <= within) continue;
       if (!is_small && !is_at_border && is_flat(surface, corners, normal, k, within)) continue;
       const bool is_within = overlay.is_within(corners, k[0], within);
       for (const std::uint32_t below : overlay.below()) {
