@@ -81,18 +81,21 @@ inline Soup source_of(const PreparedMesh& mesh) {
   return soup;
 }
 
-/// The largest distance of points of `from` to `to`: a lower bound of the truth.
-inline double sampled_distance(const Soup& from, const Soup& to, int parts) {
+/// The largest distance of points of `from` to `to`, a lower bound of the truth, or `known` where none is farther.
+inline double sampled_distance(const Soup& from, const Soup& to, int parts, double known = 0.0) {
   std::vector<TriangleDistance> distances(to.begin(), to.end());
-  double most2 = 0.0;
+  double most2 = known * known;
+  std::size_t last = 0;  // near to the point before
   for (const TriangleCorners& t : from) {
     for (int i = 0; i <= parts; ++i) {
       for (int j = 0; i + j <= parts; ++j) {
         const Vec3d p = t[0] + (t[1] - t[0]) * (1.0 * i / parts) + (t[2] - t[0]) * (1.0 * j / parts);
+        if (!distances.empty() && distances[last].squared_to(p) <= most2) continue;
         double least2 = std::numeric_limits<double>::infinity();
-        for (const TriangleDistance& d : distances) {
-          least2 = std::min(least2, d.squared_to(p));
-          if (least2 <= most2) break;
+        for (std::size_t k = 0; k < distances.size() && least2 > most2; ++k) {
+          const double one2 = distances[k].squared_to(p);
+          if (one2 < least2) last = k;
+          least2 = std::min(least2, one2);
         }
         most2 = std::max(most2, least2);
       }
