@@ -164,11 +164,11 @@ class Samples {
     const double area = cross(p[1] - p[0], p[2] - p[0]);
     for_each_row(p, [&](const Row& row, std::size_t y, std::size_t first, std::size_t end) {
       for (std::size_t x = first; x < end; ++x) {
+        std::uint8_t& covered = covered_[row.at + (x - row.first)];
+        if (covered != 0) continue;
         const Vec2d at(static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5);
         const double b = cross(at - p[0], p[2] - p[0]) / area, c = cross(p[1] - p[0], at - p[0]) / area;
         if (b < 0.0 || c < 0.0 || b + c > 1.0) continue;
-        std::uint8_t& covered = covered_[row.at + (x - row.first)];
-        if (covered != 0) continue;
         const Vec2d uv = (1.0 - b - c) * triangle.uv[0] + b * triangle.uv[1] + c * triangle.uv[2];
         if (triangle.mask == format::kNone || texel_passes(masks, triangle, uv)) covered = 1;
       }
