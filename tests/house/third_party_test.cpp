@@ -54,7 +54,7 @@ bool is_of_a_system(const std::string& path) {
       "unistd.h",      "fcntl.h",        "sys/mman.h", "sys/stat.h",    "sys/types.h",   "sys/file.h",
       "sys/wait.h",    "sys/resource.h", "sys/vfs.h",  "linux/magic.h", "dlfcn.h",       "link.h",
       "pthread.h",     "malloc.h",       "poll.h",     "dirent.h",      "sys/syscall.h", "sys/prctl.h",
-      "sys/utsname.h", "windows.h",      "ntsecapi.h", "psapi.h"};
+      "sys/utsname.h", "sys/auxv.h",     "windows.h",  "ntsecapi.h",    "psapi.h"};
   return headers.contains(path);
 }
 

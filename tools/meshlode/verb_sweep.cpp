@@ -172,8 +172,7 @@ Status set_options(const SweepWords& words, lab::SweepOptions& options) {
   // Before any thread is started: libraries that are loaded later are not this program's.
   TRY_LET(program, app::find_program_id());
   options.program_id = to_hex(*program);
-  // Not its path: that may be another program's by the time of the last round.
-  options.program = "/proc/self/exe";
+  options.program = app::find_launcher();
   return Ok{};
 }
 

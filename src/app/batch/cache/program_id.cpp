@@ -2,6 +2,9 @@
 #include "app/batch/cache/program_id.h"
 
 #include <link.h>
+#include <sys/auxv.h>
+
+#include <filesystem>
 #include <map>
 #include <string>
 
@@ -9,6 +12,19 @@
 #include "base/try.h"
 
 namespace meshlode::app {
+
+namespace {
+
+constexpr const char* kSelf = "/proc/self/exe";
+
+/// The executable where it was given to the loader by name: to the kernel the loader is the program, started by no
+/// other loader (AT_BASE), and glibc's puts the path of what it loads into AT_EXECFN. Null where the kernel started the
+/// executable.
+const char* loaded_by_name() {
+  return ::getauxval(AT_BASE) == 0 ? reinterpret_cast<const char*>(::getauxval(AT_EXECFN)) : nullptr;
+}
+
+}  // namespace
 
 Result<Hash128> find_program_id() {
   std::map<std::string, std::string> libraries;  // name -> path; the order of loading is not the program's
@@ -21,7 +37,8 @@ Result<Hash128> find_program_id() {
         return 0;
       },
       &libraries);
-  libraries[""] = "/proc/self/exe";
+  const char* path_by_loader = loaded_by_name();
+  libraries[""] = path_by_loader != nullptr ? path_by_loader : kSelf;
   Hasher hasher;
   for (const auto& [name, path] : libraries) {
     TRY_LET(file, MappedFile::open(path));
@@ -29,6 +46,13 @@ Result<Hash128> find_program_id() {
     hasher.update({reinterpret_cast<const std::uint8_t*>(line.data()), line.size()});
   }
   return hasher.digest();
+}
+
+std::filesystem::path find_launcher() {
+  const char* path = loaded_by_name();
+  if (path == nullptr) return kSelf;
+  // /libexec/meshlode -> /bin/meshlode
+  return std::filesystem::path(path).parent_path().parent_path() / "bin" / "meshlode";
 }
 
 }  // namespace meshlode::app

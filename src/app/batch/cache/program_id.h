@@ -2,6 +2,8 @@
 // Which program this is: assets of another one are not its own.
 #pragma once
 
+#include <filesystem>
+
 #include <meshlode/result.h>
 
 #include "base/hash.h"
@@ -14,5 +16,9 @@ namespace meshlode::app {
 /// same id. To be called before anything is built: TBB loads libraries of its own when it starts, and with them it is
 /// another id. Errors: kIo one of the files cannot be read.
 [[nodiscard]] Result<Hash128> find_program_id();
+
+/// What starts this very program again: no path where the kernel has a name for it, since the path may be another
+/// program's by then; in the relocatable folder (tools/package/folder.sh) its launcher.
+[[nodiscard]] std::filesystem::path find_launcher();
 
 }  // namespace meshlode::app

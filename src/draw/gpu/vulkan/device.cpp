@@ -33,7 +33,10 @@ bool has_layer(const Functions& f, const char* name) {
 Result<std::shared_ptr<InstanceImpl>> make_instance(bool validate) {
   auto out = std::make_shared<InstanceImpl>();
   out->library = dlopen("libvulkan.so.1", RTLD_NOW | RTLD_LOCAL);
-  if (out->library == nullptr) return unsupported("no Vulkan loader (libvulkan.so.1) on this machine");
+  if (out->library == nullptr) {
+    const char* why = dlerror();
+    return unsupported("no Vulkan loader on this machine: " + std::string(why != nullptr ? why : "libvulkan.so.1"));
+  }
   const auto get = reinterpret_cast<PFN_vkGetInstanceProcAddr>(dlsym(out->library, "vkGetInstanceProcAddr"));
   if (get == nullptr) return unsupported("libvulkan.so.1 is not a Vulkan loader");
   Functions& f = out->f;
