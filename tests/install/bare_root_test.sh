@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# bare_root_test.sh CPACK BUILD_FOLDER SOURCE: the packages where nothing else is. In a bare Debian 12 the container file of
-# docs/guides/packages.md is carried out line by line, the program is used, and with the packages for developers the examples of
+# bare_root_test.sh CPACK BUILD_FOLDER SOURCE: the packages where nothing else is. In a bare Debian 12 the program
+# is installed and used, and with the packages for developers the examples of
 # docs/reference/api.md and a stranger's project are built and run.
 set -euo pipefail
 cpack=$1 build=$2 source=$3
@@ -42,43 +42,21 @@ inside() {
     http_proxy="${http_proxy:-}" https_proxy="${https_proxy:-}" chroot "$root" /bin/sh -ec "cd $folder && $1" </dev/null
 }
 
-echo "== the container file"
-entry=
-# carry_out INSTRUCTION ARGUMENTS: what docker does, of what the file uses
-carry_out() {
-  echo "$1 $2"
-  case $1 in
-    FROM) [ "$2" = debian:12 ] || fail "this is a debian:12, not $2" ;;
-    COPY)
-      local to=$root${2##* }
-      mkdir -p "$to"
-      # shellcheck disable=SC2086
-      (cd "$work/debs" && cp ${2% *} "$to") ;;
-    RUN) inside "$2" >"$work/log" 2>&1 || { cat "$work/log"; fail "$2"; } ;;
-    WORKDIR) folder=$2; mkdir -p "$root$2" ;;
-    ENTRYPOINT) entry=$(echo "$2" | tr -d '[]",') ;;
-    CMD) inside "$entry $(echo "$2" | tr -d '[]",')" >/dev/null || fail "$entry $2" ;;
-    *) fail "an instruction that this test does not know: $1" ;;
-  esac
-}
-lines=0
-while read -r instruction arguments; do
-  carry_out "$instruction" "$arguments"
-  lines=$((lines + 1))
-done < <(awk '/^```dockerfile/ { on = 1; next } /^```/ { on = 0 } on' "$source/docs/guides/packages.md" | sed -e ':a' -e '/\\$/N; s/\\\n//; ta')
-[ $lines -ge 4 ] && [ "$entry" = meshlode ] || fail "no container file in docs/guides/packages.md"
-
 echo "== the program"
+mkdir -p "$root/packages" "$root/work"
+cp "$work/debs"/*.deb "$root/packages/"
+inside "apt-get update && apt-get install -y --no-install-recommends /packages/meshlode_*.deb" >"$work/log" 2>&1 ||
+  { cat "$work/log"; fail "the package of the program does not install"; }
+folder=/work
 cp "$source/data/crystal.glb" "$root$folder/"
-inside "$entry --version"
-inside "$entry build --quiet crystal.glb -o crystal.lode --codec none"
-inside "$entry repack crystal.lode -o strips.lode --codec strips"
-inside "$entry build --quiet crystal.glb -o built.lode --codec strips && cmp built.lode strips.lode"
-inside "$entry validate strips.lode && $entry verify strips.lode --source crystal.glb --quick --quiet"
+inside "meshlode --version"
+inside "meshlode build --quiet crystal.glb -o crystal.lode --codec none"
+inside "meshlode repack crystal.lode -o strips.lode --codec strips"
+inside "meshlode build --quiet crystal.glb -o built.lode --codec strips && cmp built.lode strips.lode"
+inside "meshlode validate strips.lode && meshlode verify strips.lode --source crystal.glb --quick --quiet"
 
 echo "== programs against libmeshlode-dev"
-mkdir -p "$root/packages" "$root/examples"
-cp "$work/debs"/*.deb "$root/packages/"
+mkdir -p "$root/examples"
 cp -r "$source/tests/api"/{example.cpp,c_example.c,c_build_example.c} "$source/tests/install/consumer" "$root/examples/"
 inside "apt-get update && apt-get install -y --no-install-recommends /packages/*.deb g++ cmake make" >"$work/log" 2>&1 ||
   { cat "$work/log"; fail "the packages do not install"; }

@@ -78,7 +78,23 @@ case $part in
     debootstrap --variant=minbase bullseye bullseye "$mirror" >log 2>&1 || skip "no Debian 11 from $mirror: $(tail -n 1 log)"
     echo "== Debian $(cat bullseye/etc/debian_version), $(grep -aom 1 "GNU C Library [^,]*version [0-9.]*[0-9]" bullseye/lib/x86_64-linux-gnu/libc.so.6)"
     mkdir -p bullseye/opt && cp -r meshlode bullseye/opt/
-    use bullseye /opt/meshlode/bin/meshlode ;;
+    use bullseye /opt/meshlode/bin/meshlode
+    echo "== the container file, but for its base"
+    rm -r bullseye/opt/meshlode
+    while read -r instruction arguments; do
+      echo "$instruction $arguments"
+      case $instruction in
+        FROM) [ "$arguments" = debian:12-slim ] || fail "a base that this test does not know" ;;
+        COPY) cp -r "${arguments% *}" "bullseye${arguments##* }" ;;
+        ENV) [[ $arguments == PATH=* ]] && path=${arguments#PATH=} ;;
+        WORKDIR) mkdir -p "bullseye$arguments" && cp rock.glb "bullseye$arguments/" && folder=$arguments ;;
+        ENTRYPOINT | CMD) declare "$instruction=$(tr -d '[]",' <<<"$arguments")" ;;
+        *) fail "an instruction that this test does not know" ;;
+      esac
+    done < <(grep -v '^#' "$source/.github/Dockerfile")
+    inside() { env -i PATH="$path" chroot bullseye /bin/sh -ec "cd $folder && $ENTRYPOINT $1"; }
+    inside "$CMD" | grep '^meshlode converts' || fail "no help"
+    inside "build --quiet rock.glb -o again.lode" && cmp expected.lode "bullseye$folder/again.lode" ;;
   npm)
     (cd "$work" && npm pack --silent ./meshlode)
     package=$(echo "$work"/meshlode-cli-*.tgz)
