@@ -220,4 +220,13 @@ third=$("$submit" --resume "$state") || fail "submit.sh --resume"
 merge=$(id_of merge "$third")
 within 60 is_over "$merge" || fail "the third merge is not over"
 diff <(same ../local/manifest.json) <(same "$state"/manifest.json) || fail "merged again it is another manifest"
+
+# The next batch in the folder is balanced by what this one took.
+printf 'first\n' >"$work/words"
+fourth=$("$submit" --shards 4 "$state" in -O out "${settings[@]}") || fail "submit.sh, the next batch"
+within 300 is_over "$(id_of array "$fourth")" || fail "the fourth array is not over"
+merge=$(id_of merge "$fourth")
+within 60 is_over "$merge" || fail "the fourth merge is not over"
+[ "$(grep -c -- "--shard-costs $PWD/$state/last.json" "$work/words")" = 4 ] || fail "not balanced: $(cat "$work/words")"
+diff <(same ../local/manifest.json) <(same "$state"/manifest.json) || fail "balanced anew it is another manifest"
 echo "PASSED: 30 files, 4 shards, one killed and one cancelled: as a local batch"

@@ -12,6 +12,7 @@ cpus=${SLURM_CPUS_PER_TASK:-${SLURM_CPUS_ON_NODE:-}}
 if [ -n "$cpus" ] && [[ " ${arguments[*]} " != *" --jobs"[\ =]* ]]; then
   arguments+=(--jobs "$cpus")
 fi
+[ ! -e "$state/last.json" ] || arguments+=(--shard-costs "$state/last.json")
 for ((attempt = 0; ; ++attempt)); do
   "$program" build "${arguments[@]}" --shard "$shard/$shards" --manifest "$state/shard-$shard.json"
   status=$?

@@ -5,7 +5,8 @@
 #
 # ARGUMENTs are those of `meshlode build`: inputs, -O, settings, --cache, --fail-if; not the files that a build writes beside its
 # assets. All state is files in FOLDER, which every node sees under this name: what was asked for, shard-I.json once shard I is
-# complete, manifest.json once all are, log/. Prints the ids: "array ID" (where shards are left to do) and "merge ID".
+# complete, manifest.json once all are, last.json (that of the batch before), log/. Prints the ids: "array ID" (where shards are
+# left to do) and "merge ID".
 # docs/guides/many-machines.md
 #
 #   --retries N      times that a shard which a signal ended is started again on its node (2)
@@ -14,7 +15,7 @@
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 fail() { echo "submit.sh: $*" >&2; exit 1; }
-usage() { sed -n '3,13s/^# \{0,1\}//p' "$0" >&2; exit 1; }
+usage() { sed -n '3,14s/^# \{0,1\}//p' "$0" >&2; exit 1; }
 
 shards='' retries=2 resume=no options=()
 while [ $# -gt 0 ]; do
@@ -34,7 +35,7 @@ command -v sbatch >/dev/null || fail "no sbatch on the PATH"
 for argument in "${@:2}"; do
   case ${argument%%=*} in
     --junit | --report | --depfile) fail "$argument: each shard would write this file over the others'" ;;
-    --shard | --manifest) fail "$argument: is given to each shard by this script" ;;
+    --shard | --shard-costs | --manifest) fail "$argument: is given to each shard by this script" ;;
     --dry-run | --fail-fast) fail "$argument: not for shards" ;;
     -o | --output) fail "$argument: give -O" ;;
   esac
@@ -45,7 +46,9 @@ if [ $resume = no ]; then
   [[ $shards =~ ^[1-9][0-9]{0,4}$ ]] || fail "--shards: give a number, 1 to 99999"
   [ $# -ge 1 ] || fail "nothing to build: give the arguments of meshlode build"
   program=$(command -v "${MESHLODE:-meshlode}") || fail "no program ${MESHLODE:-meshlode}"
-  rm -f "$state"/shard-*.json "$state/manifest.json"
+  rm -f "$state"/shard-*.json
+  # What the last batch of this folder took balances this one (build --shard-costs), also when it is resumed.
+  [ ! -e "$state/manifest.json" ] || mv "$state/manifest.json" "$state/last.json"
   printf '%s\0' "$(realpath "$program")" "$PWD" "$shards" "$@" >"$state/batch.new"
   mv "$state/batch.new" "$state/batch"
 else

@@ -49,6 +49,9 @@ void add_batch_options(OptionParser& parser, BatchWords& words) {
   parser.add_value("--shard I/N", words.shard,
                    "build only share I of N shares of about equal cost, such as 3/8; 'meshlode merge' joins their "
                    "manifests (default: everything)");
+  parser.add_value("--shard-costs MANIFEST", words.shard_costs,
+                   "balance shares by the processor time that this manifest of an earlier run lists; the same for all "
+                   "shards (default: by the size of the files)");
   parser.add_flag("--fail-fast", words.fail_fast, "stop after the first file that fails");
   parser.add_flag("--strict", words.strict,
                   "make errors of these warnings: a missing texture, an unknown name in --aggregate, nothing to draw, "

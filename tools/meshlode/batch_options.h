@@ -17,7 +17,8 @@ struct BatchWords {
   std::string junit, manifest, depfile, report;  ///< paths, empty for none
   std::string cache;                             ///< a folder; empty: $MESHLODE_CACHE, or none
   std::string cache_limit = "none";
-  std::string shard;  ///< "3/8"; empty: the whole batch
+  std::string shard;        ///< "3/8"; empty: the whole batch
+  std::string shard_costs;  ///< a manifest; empty: by bytes
 
   /// Those of the four files that are written.
   [[nodiscard]] std::vector<std::string> outputs() const;

@@ -17,6 +17,7 @@
 #include "app/batch/depend/depfile.h"
 #include "app/batch/jobs/jobs.h"
 #include "app/batch/jobs/weigh.h"
+#include "app/batch/shard/costs.h"
 #include "app/batch/shard/partition.h"
 #include "app/batch/shard/read_manifest.h"
 #include "app/batch/tell/tell.h"
@@ -116,6 +117,10 @@ Status open_cache(BuildCommand& command) {
 
 /// Of all jobs those that this command is to do.
 Result<std::vector<Job>> take_share(const std::vector<Job>& jobs, BuildCommand& command) {
+  const std::string& costs = command.words.shard_costs;
+  if (command.words.shard.empty() && !costs.empty()) {
+    return Error{ErrorCode::kUsage, "--shard-costs", "give --shard too: it says how shares are balanced"};
+  }
   if (command.words.shard.empty()) return jobs;
   TRY_LET(shard, app::parse_shard(command.words.shard));
   if (command.words.fail_fast) {
@@ -125,6 +130,12 @@ Result<std::vector<Job>> take_share(const std::vector<Job>& jobs, BuildCommand& 
   std::vector<std::uint64_t> weights;
   weights.reserve(jobs.size());
   for (const Job& job : jobs) weights.push_back(app::weigh_scene(job.input));
+  if (!costs.empty()) {
+    if (const auto id = find_file_id(costs)) output_files().keep(*id);
+    TRY(check_is_manifest(costs, "meshlode merge"));
+    TRY_LET(last, app::read_costs(costs));
+    weights = app::weigh_by_costs(jobs, weights, *last);
+  }
   command.shard = app::plan_shard(jobs, weights, *shard);
   std::vector<Job> mine;
   for (const std::uint64_t position : command.shard->positions) mine.push_back(jobs[position]);

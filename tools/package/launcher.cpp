@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// bin/meshlode of the relocatable folder (folder.sh): starts ../libexec/meshlode by the folder's own loader, with the folder's
-// own libraries, whatever the host has. The path of a loader is fixed in an executable, so that a folder that may lie anywhere
-// needs this step. Linked statically: it needs no shell, no library and no /proc.
+// bin/meshlode of the relocatable folder (folder.sh): starts ../libexec/meshlode by the folder's own loader, with the
+// folder's own libraries, whatever the host has. The path of a loader is fixed in an executable, so that a folder that
+// may lie anywhere needs this step. Linked statically: it needs no shell, no library and no /proc.
 #include <sys/auxv.h>
 #include <unistd.h>
 
@@ -26,15 +26,16 @@ int fail(const char* what, const std::string& path) {
 }  // namespace
 
 int main(int, char** argv) {
-  // Where this file lies: the kernel's answer, or, without /proc, the path that it was started by. Links are followed: npm
-  // starts it by one.
+  // Where this file lies: the kernel's answer, or, without /proc, the path that it was started by. Links are followed:
+  // npm starts it by one.
   char self[PATH_MAX];
   const ssize_t length = ::readlink("/proc/self/exe", self, sizeof self - 1);
   if (length > 0) {
     self[length] = '\0';
   } else {
     const auto* started_by = reinterpret_cast<const char*>(::getauxval(AT_EXECFN));
-    if (started_by == nullptr || ::realpath(started_by, self) == nullptr) return fail("cannot find its own folder", "AT_EXECFN");
+    if (started_by == nullptr || ::realpath(started_by, self) == nullptr)
+      return fail("cannot find its own folder", "AT_EXECFN");
   }
   std::string folder = self;
   for (int level = 0; level < 2; ++level) {  // /bin/meshlode

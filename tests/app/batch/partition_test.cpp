@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <initializer_list>
 #include <limits>
 #include <random>
 #include <string>
 #include <vector>
 
 #include "app/batch/jobs/weigh.h"
+#include "app/batch/shard/costs.h"
 #include "app/batch/shard/partition.h"
 #include "batch_folder.h"
 
@@ -147,6 +149,47 @@ TEST(Weight, IsOfTheSceneAndOfWhatAGltfNames) {
   EXPECT_EQ(weigh_scene(folder.write("b.gltf", "broken")), 1U + 6U);
   EXPECT_EQ(weigh_scene(folder.write("b.ply", "ply")), 1U + 3U);
   EXPECT_EQ(weigh_scene(folder.path("missing.glb")), 1U);
+}
+
+JobResult built_in(const char* input, double processor_seconds, JobStatus status = JobStatus::kBuilt) {
+  JobResult result;
+  result.job.input = input;
+  result.status = status;
+  result.processor_seconds = processor_seconds;
+  return result;
+}
+
+std::vector<Job> jobs_of(std::initializer_list<const char*> inputs) {
+  std::vector<Job> jobs;
+  for (const char* input : inputs) jobs.emplace_back().input = input;
+  return jobs;
+}
+
+TEST(Partition, MeasuredCostsWeighAndTheOthersAreEstimatedAtTheirRate) {
+  const auto jobs = jobs_of({"a", "b", "new", "cached", "failed"});
+  const std::vector<std::uint64_t> bytes{100, 300, 50, 200, 400};
+  // 8 s for 400 bytes: 20 ms a byte. What a cache gave or what failed was no build.
+  const std::vector<JobResult> last{built_in("gone", 500.0), built_in("b", 2.0), built_in("a", 6.0),
+                                    built_in("cached", 0.01, JobStatus::kCached),
+                                    built_in("failed", 0.02, JobStatus::kFailed)};
+  EXPECT_EQ(weigh_by_costs(jobs, bytes, last),
+            (std::vector<std::uint64_t>{6'000'000, 2'000'000, 1'000'000, 4'000'000, 8'000'000}));
+}
+
+TEST(Partition, WithoutMeasuredCostsBytesWeigh) {
+  const auto jobs = jobs_of({"a", "b"});
+  const std::vector<std::uint64_t> bytes{7, 9};
+  EXPECT_EQ(weigh_by_costs(jobs, bytes, {}), bytes);
+  EXPECT_EQ(weigh_by_costs(jobs, bytes, {built_in("a", 0.0), built_in("b", 1.0, JobStatus::kUnchanged)}), bytes);
+  EXPECT_EQ(weigh_by_costs(jobs, bytes, {built_in("other", 3.0)}), bytes);
+}
+
+TEST(Partition, CostsBeyondAnyRangeStayNumbers) {
+  const auto jobs = jobs_of({"a", "sparse"});
+  const std::vector<std::uint64_t> bytes{1, std::numeric_limits<std::uint64_t>::max()};
+  const auto weights = weigh_by_costs(jobs, bytes, {built_in("a", 1e12)});
+  EXPECT_EQ(weights, (std::vector<std::uint64_t>{1'000'000'000'000'000'000U, 1'000'000'000'000'000'000U}));
+  EXPECT_EQ(assign_shards(weights, 2), (std::vector<std::uint32_t>{1, 2}));
 }
 
 }  // namespace

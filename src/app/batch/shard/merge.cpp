@@ -105,7 +105,7 @@ Result<Manifest> merge_shards(std::vector<ShardManifest> shards) {
   const std::uint64_t batch_jobs = first.shard->batch_jobs;
   Manifest merged{
       first.generator, kManifestVersion, first.program, first.versions, first.settings, 0, true, std::nullopt, {}};
-  constexpr const char* kAgain = "; inputs changed between shards: build all of them again";
+  constexpr const char* kAgain = "; inputs or --shard-costs changed between shards: build all of them again";
   for (const auto& [position, s, i] : places) {
     JobResult& result = shards[s].manifest.results[i];
     if (position < merged.results.size()) {
