@@ -96,6 +96,14 @@ for scene in "${scenes[@]}"; do
   like $scene $scene-quantized 3
   like $scene $scene-draco 3
   like $scene-draco $scene-sequential 1
+  # What extract packs, unpacked by another decoder: the finest level again.
+  "$program" extract $scene.lode --level 0 --quiet -o $scene-plain.glb
+  "$program" extract $scene.lode --level 0 --quiet --quantize --meshopt -o $scene-small.glb
+  transform dequantize $scene-small.glb $scene-unpacked.glb
+  ! grep -q EXT_meshopt_compression $scene-unpacked.glb || fail "$scene-unpacked.glb is still packed"
+  for way in -plain -small -unpacked; do describe "$scene$way" >"$scene$way.said"; done
+  like $scene-plain $scene-small 3
+  like $scene-small $scene-unpacked 1
 done
 
 # Newer than Debian's libmeshoptimizer: by name, exit code 5.

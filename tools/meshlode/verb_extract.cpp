@@ -32,6 +32,7 @@ struct ExtractOptions {
   std::optional<std::string> output;
   std::optional<std::string> mesh;
   bool is_stuck = false;
+  app::Packing packing;
   CutRequest request;
   std::string max_decoded = kDefaultMaxDecodedText;
   OutputOptions out;
@@ -46,8 +47,8 @@ Status check_options(const ExtractOptions& o) {
   if (*o.output == kStream && o.out.json()) return usage("-o", "- and --format json both mean stdout");
   if (Status name = check_output_name("-o", *o.output, ".glb"); !name) return name;
   if (o.is_stuck) {
-    if (o.request.has_way() || o.request.bounds.has_any() || o.mesh)
-      return usage("--stuck", "cannot be combined with a cut, a bound or --mesh");
+    if (o.request.has_way() || o.request.bounds.has_any() || o.mesh || o.packing.quantize || o.packing.meshopt)
+      return usage("--stuck", "cannot be combined with a cut, a bound, --mesh, --quantize or --meshopt");
   } else if (auto status = check_request(o.request); !status) {
     return status.error();
   }
@@ -191,7 +192,8 @@ std::string describe_text(const run::Asset& asset, const std::vector<MeshCuts>& 
   return text;
 }
 
-Result<std::vector<std::uint8_t>> export_cuts(const run::Asset& asset, const std::vector<MeshCuts>& cuts) {
+Result<std::vector<std::uint8_t>> export_cuts(const run::Asset& asset, const std::vector<MeshCuts>& cuts,
+                                              app::Packing packing) {
   std::vector<app::LodChain> chains(cuts.size());
   for (std::size_t m = 0; m < cuts.size(); ++m) {
     for (const CutLevel& level : cuts[m].levels) {
@@ -199,7 +201,7 @@ Result<std::vector<std::uint8_t>> export_cuts(const run::Asset& asset, const std
       chains[m].screen_coverage.push_back(level.screen_coverage);
     }
   }
-  return app::export_glb_lods(asset, chains);
+  return app::export_glb_lods(asset, chains, packing);
 }
 
 int run_extract(const Verb& verb, std::span<char* const> args) {
@@ -212,6 +214,9 @@ int run_extract(const Verb& verb, std::span<char* const> args) {
   add_output_options(parser, o.out);
   parser.add_value("--mesh NAME|INDEX", o.mesh,
                    "export only this mesh; nodes of others stay, without a mesh (default: all meshes)");
+  parser.add_flag("--quantize", o.packing.quantize,
+                  "store positions, normals and texture coordinates as integers (KHR_mesh_quantization)");
+  parser.add_flag("--meshopt", o.packing.meshopt, "compress vertices and triangles (EXT_meshopt_compression)");
   parser.group("Cut (one of these)");
   parser.add_value("--error E", r.error, "uniform cut: largest allowed error in mesh units (default: none)");
   parser.add_value("--triangles N", r.triangles,
@@ -248,7 +253,7 @@ int run_extract(const Verb& verb, std::span<char* const> args) {
   if (!chosen) return print_error(chosen.error());
   const auto cuts = choose_cuts(r, *asset, *chosen);
   if (!cuts) return print_error(cuts.error());
-  auto glb = export_cuts(*asset, *cuts);
+  auto glb = export_cuts(*asset, *cuts, o.packing);
   if (!glb) {
     Error error = glb.error();
     error.where = error.where.empty() ? o.input : o.input + ": " + error.where;
@@ -272,6 +277,7 @@ const Verb kExtractVerb{"extract", "write a cut of an asset as a GLB",
                         "with the scene's nodes, names, instances, materials and textures.",
                         "meshlode extract scene.lode --error 0.001 --relative -o cut.glb\n"
                         "  meshlode extract scene.lode --triangles 20000 -o fallback.glb\n"
+                        "  meshlode extract scene.lode --triangles 20000 --quantize --meshopt -o small.glb\n"
                         "  meshlode extract scene.lode --lods 4 -o levels.glb\n"
                         "  meshlode extract scene.lode --stuck -o stuck.glb",
                         run_extract};

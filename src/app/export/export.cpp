@@ -46,9 +46,10 @@ constexpr std::array<std::string_view, 5> kGeometryExtensions = {"EXT_mesh_gpu_i
 struct ExportedMesh {
   std::vector<std::uint32_t> levels;  ///< indices in the glTF, the finest first; empty without primitives
   Vec3d translation{0.0};             ///< of a node to put around it
+  double step = 0.0;                  ///< its scale, where positions are quantized; else 0
   std::string name;
   std::vector<double> screen_coverage;
-  [[nodiscard]] bool is_translated() const { return translation != Vec3d(0.0); }
+  [[nodiscard]] bool is_moved() const { return step > 0.0 || translation != Vec3d(0.0); }
 };
 
 /// A mesh of the asset in an exported one: the mesh itself, or a part of it that the asset has as a mesh of its own.
@@ -99,13 +100,15 @@ bool is_plain_node(const Json& node) {
 
 class Exporter {
  public:
-  Exporter(const run::Asset& asset, std::span<const LodChain> chains) : asset_(asset), chains_(chains) {}
+  Exporter(const run::Asset& asset, std::span<const LodChain> chains, Packing packing)
+      : asset_(asset), chains_(chains), packing_(packing) {}
   Result<std::vector<std::uint8_t>> run();
 
  private:
   Status add_mesh(std::size_t mesh, std::span<const MeshId> member_ids);
-  Status add_primitives(const Member& member, const Json* source, std::span<const CutPrimitive> primitives,
-                        const Vec3d& translation, Json& json);
+  Status place_mesh(std::span<const Member> members, ExportedMesh& exported) const;
+  Status add_primitives(const Member& member, const Json* source, std::span<CutPrimitive> primitives,
+                        const ExportedMesh& exported, Json& json);
   Status carry_buffers();
   Status carry_images();
   void move_texture_sources();
@@ -121,12 +124,13 @@ class Exporter {
 
   const run::Asset& asset_;
   std::span<const LodChain> chains_;
+  Packing packing_;
   std::vector<std::size_t> origins_ = origins_of_meshes(read_meta(asset_.meta_json()), asset_.meshes().size());
   Json document_;
   Json meshes_ = Json::array();
   std::vector<ExportedMesh> exported_;
   GlbBinary binary_;
-  PrimitiveWriter primitives_{asset_, document_, binary_};
+  PrimitiveWriter primitives_{asset_, document_, binary_, packing_};
   std::map<std::pair<std::uint64_t, std::uint64_t>, GlbBinary::Range> carried_;  ///< blobs in it, by offset and bytes
   bool has_lods_ = false;
 };
@@ -270,15 +274,42 @@ std::map<Json, const Json*> extensions_by_material(const Json* mesh) {
   return out;
 }
 
-Status Exporter::add_primitives(const Member& member, const Json* source, std::span<const CutPrimitive> primitives,
-                                const Vec3d& translation, Json& json) {
+Status Exporter::add_primitives(const Member& member, const Json* source, std::span<CutPrimitive> primitives,
+                                const ExportedMesh& exported, Json& json) {
   const auto extensions = extensions_by_material(source);
-  for (const CutPrimitive& primitive : primitives) {
-    TRY_LET(made, primitives_.write(member.record, primitive, member.origin() - translation));
+  for (CutPrimitive& primitive : primitives) {
+    TRY_LET(made, primitives_.write(member.record, primitive, member.origin() - exported.translation, exported.step));
     const auto known = extensions.find(made->value("material", Json()));
     if (known != extensions.end()) (*made)["extensions"] = *known->second;
     json["primitives"].push_back(std::move(*made));
   }
+  return Ok{};
+}
+
+/// What all levels of a mesh stand in: a viewer puts one in the place of another.
+Status Exporter::place_mesh(std::span<const Member> members, ExportedMesh& exported) const {
+  if (!packing_.quantize) {
+    // Of the members one decides, unless its floats hold the origin.
+    for (const Member& member : members) {
+      if (!exported.is_moved()) exported.translation = member.origin() - choose_origin(member.record, member.levels);
+    }
+    return Ok{};
+  }
+  FrameOfPositions positions;
+  for (const Member& member : members) {
+    for (const auto& level : member.levels) positions.add(member.record, level);
+  }
+  const QuantizedFrame frame = positions.frame();
+  // Readers have the transforms of nodes as floats.
+  const bool is_held =
+      std::isnormal(static_cast<float>(frame.step)) && std::isfinite(static_cast<float>(frame.origin.x)) &&
+      std::isfinite(static_cast<float>(frame.origin.y)) && std::isfinite(static_cast<float>(frame.origin.z));
+  if (!is_held) {
+    return Error{ErrorCode::kUnsupported, std::string(asset_.string(members.front().record.name)),
+                 "a position does not fit glTF's 32-bit floats"};
+  }
+  exported.translation = frame.origin;
+  exported.step = frame.step;
   return Ok{};
 }
 
@@ -294,22 +325,20 @@ Status Exporter::add_mesh(std::size_t mesh, std::span<const MeshId> member_ids) 
       if (!primitives->empty()) member.levels.push_back(std::move(*primitives));
     }
     if (member.levels.empty()) continue;
-    if (!exported.is_translated()) {
-      exported.translation = member.origin() - choose_origin(member.record, member.levels);
-    }
     level_count = std::max(level_count, member.levels.size());
     members.push_back(std::move(member));
   }
   if (members.empty()) return Ok{};
+  TRY(place_mesh(members, exported));
   exported.screen_coverage = join_coverage(members, level_count);
   const Json* source = find_element(document_, "meshes", mesh);
   if (source != nullptr && source->is_object() && source->contains("name")) exported.name = source->at("name");
   if (exported.name.empty()) exported.name = asset_.string(asset_.meshes()[mesh].name);
   for (std::size_t k = 0; k < level_count; ++k) {
     Json json = {{"primitives", Json::array()}};
-    for (const Member& member : members) {
-      const auto& level = member.levels[std::min(k, member.levels.size() - 1)];
-      TRY_LET(added, add_primitives(member, source, level, exported.translation, json));
+    for (Member& member : members) {
+      auto& level = member.levels[std::min(k, member.levels.size() - 1)];
+      TRY_LET(added, add_primitives(member, source, level, exported, json));
     }
     const std::string name = k == 0 || exported.name.empty() ? exported.name : level_name(exported.name, k);
     if (!name.empty()) json["name"] = name;
@@ -383,7 +412,7 @@ Status Exporter::attach_mesh(std::size_t i) {
   if (mesh.levels.empty()) return Ok{};
   const bool is_fixed = is_plain_node(node) && !document_.contains("animations");
   const bool needs_frame = mesh.levels.size() > 1 && !is_fixed;
-  if (!mesh.is_translated() && !needs_frame) {
+  if (!mesh.is_moved() && !needs_frame) {
     attach_levels(i, mesh);
     return Ok{};
   }
@@ -396,9 +425,10 @@ Status Exporter::attach_mesh(std::size_t i) {
     holder = nodes.size();
     nodes.push_back(std::move(child));  // `node` dangles from here on
   };
-  if (mesh.is_translated()) {
+  if (mesh.is_moved()) {
     add_child(" (origin)");
     nodes[holder]["translation"] = {mesh.translation.x, mesh.translation.y, mesh.translation.z};
+    if (mesh.step > 0.0) nodes[holder]["scale"] = {mesh.step, mesh.step, mesh.step};
   }
   if (mesh.levels.size() > 1) add_child(" (levels)");
   attach_levels(holder, mesh);
@@ -428,6 +458,11 @@ void Exporter::finish_document() {
   document_.erase("skins");
   if (!meshes_.empty()) document_["meshes"] = std::move(meshes_);
   if (!binary_.bytes().empty()) document_["buffers"] = Json::array({{{"byteLength", binary_.bytes().size()}}});
+  const bool is_compressed = primitives_.fallback_bytes() > 0;
+  if (is_compressed) {
+    document_["buffers"].push_back({{"byteLength", primitives_.fallback_bytes()},
+                                    {"extensions", {{"EXT_meshopt_compression", {{"fallback", true}}}}}});
+  }
   for (const char* key : {"extensionsUsed", "extensionsRequired"}) {
     const auto it = document_.find(key);
     if (it == document_.end()) continue;
@@ -443,6 +478,8 @@ void Exporter::finish_document() {
       document_[key] = std::move(kept);
   }
   if (has_lods_) use_extension("MSFT_lod", false);
+  if (packing_.quantize && document_.contains("meshes")) use_extension("KHR_mesh_quantization", true);
+  if (is_compressed) use_extension("EXT_meshopt_compression", true);
   // glTF wants every top-level list to have an element.
   for (auto it = document_.begin(); it != document_.end();) {
     it = it->is_array() && it->empty() ? document_.erase(it) : std::next(it);
@@ -488,13 +525,14 @@ bool is_sound(const LodChain& chain) {
 }  // namespace
 
 Result<std::vector<std::uint8_t>> export_glb(const run::Asset& asset,
-                                             std::span<const std::vector<ClusterId>> cut_per_mesh) {
+                                             std::span<const std::vector<ClusterId>> cut_per_mesh, Packing packing) {
   std::vector<LodChain> chains(cut_per_mesh.size());
   for (std::size_t m = 0; m < chains.size(); ++m) chains[m].cuts = {cut_per_mesh[m]};
-  return export_glb_lods(asset, chains);
+  return export_glb_lods(asset, chains, packing);
 }
 
-Result<std::vector<std::uint8_t>> export_glb_lods(const run::Asset& asset, std::span<const LodChain> chain_per_mesh) {
+Result<std::vector<std::uint8_t>> export_glb_lods(const run::Asset& asset, std::span<const LodChain> chain_per_mesh,
+                                                  Packing packing) {
   if (chain_per_mesh.size() != asset.meshes().size()) {
     return Error{ErrorCode::kUsage, "", "one cut per mesh is needed"};
   }
@@ -517,7 +555,7 @@ Result<std::vector<std::uint8_t>> export_glb_lods(const run::Asset& asset, std::
   TRY(run::check_decoded_bytes(asset, bytes));
   return guarded({}, [&]() -> Result<std::vector<std::uint8_t>> {
     try {
-      return Exporter(asset, chain_per_mesh).run();
+      return Exporter(asset, chain_per_mesh, packing).run();
     } catch (const Json::exception& failure) {
       return malformed(failure.what());  // the document is a file's, and of a shape that glTF does not allow
     }

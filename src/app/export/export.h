@@ -8,6 +8,7 @@
 
 #include <meshlode/result.h>
 
+#include "app/export/packing.h"
 #include "base/ids.h"
 #include "run/read/asset.h"
 
@@ -18,7 +19,8 @@ namespace meshlode::app {
 /// point become one vertex wherever their attributes agree. Errors: kInvalid for a page or a blob that is not what was
 /// written.
 [[nodiscard]] Result<std::vector<std::uint8_t>> export_glb(const run::Asset& asset,
-                                                           std::span<const std::vector<ClusterId>> cut_per_mesh);
+                                                           std::span<const std::vector<ClusterId>> cut_per_mesh,
+                                                           Packing packing = {});
 
 /// The discrete levels of one mesh, the finest first, for MSFT_lod.
 struct LodChain {
@@ -32,6 +34,7 @@ struct LodChain {
 /// the coverage hints as MSFT_screencoverage. A reader without that extension sees the finest level. A mesh with one
 /// level is exported as export_glb does. Errors: kUsage for chains and coverage that are not as described.
 [[nodiscard]] Result<std::vector<std::uint8_t>> export_glb_lods(const run::Asset& asset,
-                                                                std::span<const LodChain> chain_per_mesh);
+                                                                std::span<const LodChain> chain_per_mesh,
+                                                                Packing packing = {});
 
 }  // namespace meshlode::app

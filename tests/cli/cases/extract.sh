@@ -10,11 +10,19 @@ json extract extract a.lode --lod-errors 0,0.01 --relative -o errors.glb --forma
 json extract extract a.lode --lod-ratios 1,0.2 --size 640x480 --pixel-error 2 -o ratios.glb --format json
 run extract a.lode --stuck -o stuck.glb
 json extract extract a.lode --stuck -o stuck.glb --format json
+for words in --quantize --meshopt "--quantize --meshopt"; do
+  # shellcheck disable=SC2086
+  code extract a.lode --level 0 $words -o small.glb
+  "$MESHLODE" build --quiet small.glb -o small.lode
+  "$MESHLODE" info small.lode --format json | grep -m 1 '"source_triangles"'
+done
+"$MESHLODE" info a.lode --format json | grep -m 1 '"source_triangles"'
 "$MESHLODE" build --quiet levels.glb -o again.lode && echo "a chain builds again"
 echo "nothing is written from here on"
 run extract a.lode -o x.glb
 run extract a.lode --error 0.1 --triangles 5 -o x.glb
 run extract a.lode --stuck --error 0.1 -o x.glb
+run extract a.lode --stuck --meshopt -o x.glb
 run extract a.lode --lods 0 -o x.glb
 run extract a.lode --lods 17 -o x.glb
 run extract a.lode --lod-ratios 0.5,0.5 -o x.glb

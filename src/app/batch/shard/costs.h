@@ -18,10 +18,11 @@ namespace meshlode::app {
 /// is still at work: either may change before the last shard has read it, and shards that differ in it overlap.
 [[nodiscard]] Result<std::vector<JobResult>> read_costs(const std::filesystem::path& manifest);
 
-/// Processor time, in microseconds, of the jobs that `last` built, by their inputs. The others, which are new, came from a cache
-/// or failed, weigh what their bytes take at the rate of those. Bytes themselves where `last` built none.
+/// Processor time, in microseconds, of the jobs that `last` built, by their inputs. The others, which are new, came
+/// from a cache or failed, weigh what their bytes take at the rate of those. Bytes themselves where `last` built none.
 /// \pre as many bytes as jobs
-[[nodiscard]] std::vector<std::uint64_t> weigh_by_costs(const std::vector<Job>& jobs, std::span<const std::uint64_t> bytes,
+[[nodiscard]] std::vector<std::uint64_t> weigh_by_costs(const std::vector<Job>& jobs,
+                                                        std::span<const std::uint64_t> bytes,
                                                         const std::vector<JobResult>& last);
 
 }  // namespace meshlode::app

@@ -39,6 +39,9 @@ scene() {
   esac
   export_as "$name-finest" "$work/$name.lode" --level 0
   export_as "$name-lods" "$work/$name.lode" --lods 4
+  export_as "$name-quantized" "$work/$name.lode" --level 0 --quantize
+  # Of compressed data the validator sees the views alone; the importer's tests decode it.
+  export_as "$name-compressed" "$work/$name.lode" --lods 3 --quantize --meshopt
   # A fallback of half the triangles, where the coarsest cuts have no more than that.
   triangles=$("$meshlode" info "$work/$name.lode" --format json | "$node" -e '
     const info = JSON.parse(require("fs").readFileSync(0, "utf8"));
