@@ -56,6 +56,7 @@ endif()
 
 install(FILES include/meshlode/format.h include/meshlode/page.h include/meshlode/page_cache.h include/meshlode/decode.glsl
               include/meshlode/result.h include/meshlode/runtime.h include/meshlode/meshlode.h include/meshlode/version.h
+              src/run/select/metric.h
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/meshlode COMPONENT dev)
 
 # Shows the functions of <meshlode/build.h> and <meshlode/meshlode_build.h>, and nothing else: CGAL and what else is inside

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # install-deps.sh [--tests [--GROUP...]]: the Debian 12 packages that building meshlode needs; with --tests also what its tests
 # need (a second compiler for the comparison of content hashes, sample models), and by group what tools/test.sh --all=GROUP
-# needs beyond that: --browser a browser and npm, --docs the site of the documents, --npm encoders' npm, --packages a bare root and
-# npm, --portability another standard library and
+# needs beyond that: --browser a browser and npm, --docs the site of the documents, --examples OpenGL without a window, --npm
+# encoders' npm, --packages a bare root and npm, --portability another standard library and
 # a compiler for another system, --slurm a scheduler, which the test of tools/cluster starts for itself (a system that starts the
 # services of what it installs may start munge's), --wasm Node. Nothing happens where all are there.
 set -euo pipefail
@@ -32,6 +32,7 @@ fi
 for group in "${@:2}"; do
   case $group in
     --docs) packages+=(mkdocs mkdocs-material doxygen) ;;
+    --examples) packages+=(libegl-dev libopengl-dev libgl-dev libegl-mesa0 libgl1-mesa-dri pkg-config) ;;
     --npm) command -v npm >/dev/null || packages+=(nodejs npm) ;;  # which may come from elsewhere
     --packages) packages+=(file dpkg-dev debootstrap); command -v npm >/dev/null || packages+=(nodejs npm) ;;
     --portability) packages+=(libc++-14-dev libc++abi-14-dev googletest g++-mingw-w64-x86-64 wine64) ;;

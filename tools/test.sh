@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# test.sh [--all | --all=GROUP]: installs what is missing (what the groups browser, docs, npm, packages, portability, slurm and wasm
+# test.sh [--all | --all=GROUP]: installs what is missing (what the groups browser, docs, examples, npm, packages, portability, slurm and wasm
 # need for themselves for --all and --all=GROUP alone), then
 #   1. a release build and its tests (--all: the long ones too; --all=GROUP: those of them whose names have GROUP in them),
 #   2. a sanitized core, built by clang with address and undefined behaviour sanitizers: the programs that read hostile
@@ -115,7 +115,7 @@ failures() {
 }
 
 groups=()
-for name in browser docs npm packages portability slurm wasm; do
+for name in browser docs examples npm packages portability slurm wasm; do
   [ $all = no ] && [[ $group != *$name* ]] || groups+=(--"$name")
 done
 tools/install-deps.sh --tests "${groups[@]}" || exit 1

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What --quantize and --meshopt write, read back by the importer: the cut's triangles, to the integer where 16 bits hold them.
+// What --quantize and --meshopt write, read back by the importer: the cut's triangles, to the integer where 16 bits
+// hold them.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -63,7 +64,8 @@ std::vector<Triangle> triangles_of_cut(const run::Asset& asset, const std::vecto
         if (!floats.normals.empty()) corner.normal = floats.normals[v];
         if (record.uv_set_count == 0) continue;
         const double step = format::exp2_exact(record.uv_log2[0]);
-        for (int c = 0; c < 2; ++c) corner.steps[3 + static_cast<std::size_t>(c)] = std::lround(floats.uvs[0][v][c] / step);
+        for (int c = 0; c < 2; ++c)
+          corner.steps[3 + static_cast<std::size_t>(c)] = std::lround(floats.uvs[0][v][c] / step);
       }
     }
   }
@@ -107,7 +109,8 @@ std::vector<Triangle> triangles_of_import(const std::vector<std::uint8_t>& glb, 
         if (!primitive.normals.empty()) corner.normal = primitive.normals[v];
         if (record.uv_set_count == 0) continue;
         const double step = format::exp2_exact(record.uv_log2[0]);
-        for (int c = 0; c < 2; ++c) corner.steps[3 + static_cast<std::size_t>(c)] = std::lround(primitive.uvs[0][v][c] / step);
+        for (int c = 0; c < 2; ++c)
+          corner.steps[3 + static_cast<std::size_t>(c)] = std::lround(primitive.uvs[0][v][c] / step);
       }
     }
   }
@@ -177,7 +180,9 @@ TEST(ExportPacked, ExtensionsAreRequiredWhereTheyAreUsed) {
     std::set<std::string> names;
     const nlohmann::json json = document_of(packed(*asset, clusters, packing));
     for (const auto& name : json.value("extensionsRequired", nlohmann::json::array())) names.insert(name);
-    EXPECT_EQ(json.contains("buffers") ? json["buffers"].size() : 0U, clusters.empty() ? 0U : packing.meshopt ? 2U : 1U);
+    EXPECT_EQ(json.contains("buffers") ? json["buffers"].size() : 0U, clusters.empty()  ? 0U
+                                                                      : packing.meshopt ? 2U
+                                                                                        : 1U);
     return names;
   };
   using Names = std::set<std::string>;
@@ -209,7 +214,8 @@ TEST(ExportPacked, PositionsOfMoreThanSixteenBitsMoveByHalfAStepOfACoarserGrid) 
         EXPECT_LE(accessor["max"][c].get<int>(), 65535);
       }
     }
-    EXPECT_GT(2.0 * (record.bounds_max[0] - record.bounds_min[0]) * grid / step, 65535.0) << "no coarser than it must be";
+    EXPECT_GT(2.0 * (record.bounds_max[0] - record.bounds_min[0]) * grid / step, 65535.0)
+        << "no coarser than it must be";
   }
   // Uncompressed, vertices keep their order: each moves by at most half a step along each axis.
   const scene::Scene exact = imported(packed(*asset, cut, {})), moved = imported(packed(*asset, cut, {true, false}));
@@ -256,7 +262,8 @@ TEST(ExportPacked, ChainsAndFarMeshesStandWhereTheyStood) {
   const auto finest = test::finest_cuts(*asset)[0];
   const auto coarse = run::select_uniform(*asset, MeshId(0U), 1e30).clusters;
   for (const Packing packing : kPackings) {
-    expect_same(triangles_of_cut(*asset, finest), triangles_of_import(packed(*asset, finest, packing), asset->meshes()[0], Vec3d(0.0)), 1.0);
+    expect_same(triangles_of_cut(*asset, finest),
+                triangles_of_import(packed(*asset, finest, packing), asset->meshes()[0], Vec3d(0.0)), 1.0);
     // A reader without MSFT_lod sees the finest level; the coarser one has the same frame.
     const std::vector<LodChain> chain{{{finest, coarse}, {0.5, 0.0}}};
     const auto glb = export_glb_lods(*asset, chain, packing);

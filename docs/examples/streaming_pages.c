@@ -10,6 +10,9 @@
 #include <unistd.h>
 
 #include <meshlode/meshlode.h>
+
+#include "write_png.h"
+
 enum { WIDTH = 640, HEIGHT = 480, LOADS_PER_FRAME = 4 };
 static const double FOVY = 0.7853981633974483; /* full vertical angle, radians */
 static int file;
@@ -75,35 +78,56 @@ static void load_requests(const meshlode_selector* selector) {
     used_bytes += pages[p].bytes;
   }
 }
-/* 4. Draw a cluster: a dot for each vertex, the nearest wins. A renderer draws its triangles. */
+/* 4. Draw a cluster: its triangles, the nearest point of each pixel wins. */
 static unsigned char picture[HEIGHT][WIDTH][3];
 static float depth[HEIGHT][WIDTH], positions[3 * MESHLODE_MAX_CLUSTER_VERTICES];
+static unsigned char triangles[3 * MESHLODE_MAX_CLUSTER_TRIANGLES];
+static double screen[MESHLODE_MAX_CLUSTER_VERTICES][3]; /* x and y in pixels, 1 / distance; 0: behind the eye */
+static double twice_area(const double* p, const double* q, double x, double y) {
+  return (q[0] - p[0]) * (y - p[1]) - (q[1] - p[1]) * (x - p[0]);
+}
+static void fill(const double* a, const double* b, const double* c, uint32_t color) {
+  const double area = twice_area(a, b, c[0], c[1]);
+  const double low_x = fmin(a[0], fmin(b[0], c[0])), high_x = fmax(a[0], fmax(b[0], c[0]));
+  const double low_y = fmin(a[1], fmin(b[1], c[1])), high_y = fmax(a[1], fmax(b[1], c[1]));
+  int x, y, k;
+  if (!(area != 0.0) || !(a[2] > 0.0 && b[2] > 0.0 && c[2] > 0.0)) return; /* a renderer clips instead */
+  for (y = (int)fmax(low_y, 0.0); y < HEIGHT && y <= high_y; ++y)
+    for (x = (int)fmax(low_x, 0.0); x < WIDTH && x <= high_x; ++x) {
+      const double u = twice_area(b, c, x + 0.5, y + 0.5) / area, v = twice_area(c, a, x + 0.5, y + 0.5) / area;
+      const float near = (float)(u * a[2] + v * b[2] + (1.0 - u - v) * c[2]);
+      if (u < 0.0 || v < 0.0 || u + v > 1.0 || near <= depth[y][x]) continue;
+      depth[y][x] = near;
+      for (k = 0; k < 3; ++k) picture[y][x][k] = (unsigned char)(96 + color * (37u + 24u * (unsigned)k) % 160);
+    }
+}
 static void draw(meshlode_draw_item item, const double eye[3], const double axes[3][3]) {
   meshlode_cluster_floats cluster = {MESHLODE_MAX_CLUSTER_VERTICES, MESHLODE_MAX_CLUSTER_TRIANGLES, positions};
   const meshlode_page_bytes page = {meshlode_page_of(asset, item.cluster),
                                     slots[meshlode_page_of(asset, item.cluster)]};
+  const double scale = HEIGHT / (2.0 * tan(FOVY / 2.0));
   uint32_t count, v;
   const meshlode_instance* instance = meshlode_instances(asset, &count) + item.instance;
   const double *m = instance->transform, *o = meshlode_meshes(asset, &count)[instance->mesh].origin;
+  cluster.triangles = triangles;
   if (meshlode_decode_floats(asset, page, item.cluster, &cluster, NULL)) stop("cluster", "does not decode");
   for (v = 0; v < cluster.vertex_count; ++v) {
     double p[3], q[3];
-    int k, x, y;
+    int k;
     for (k = 0; k < 3; ++k) p[k] = o[k] + (double)positions[3 * v + (uint32_t)k];
     for (k = 0; k < 3; ++k) q[k] = m[4 * k] * p[0] + m[4 * k + 1] * p[1] + m[4 * k + 2] * p[2] + m[4 * k + 3] - eye[k];
     for (k = 0; k < 3; ++k) p[k] = axes[k][0] * q[0] + axes[k][1] * q[1] + axes[k][2] * q[2];
-    q[0] = WIDTH / 2 + p[0] / p[2] * HEIGHT / (2.0 * tan(FOVY / 2.0));
-    q[1] = HEIGHT / 2 - p[1] / p[2] * HEIGHT / (2.0 * tan(FOVY / 2.0));
-    if (!(p[2] > 0.0 && q[0] >= 0.0 && q[0] < WIDTH && q[1] >= 0.0 && q[1] < HEIGHT)) continue;
-    if ((float)p[2] >= depth[y = (int)q[1]][x = (int)q[0]]) continue;
-    depth[y][x] = (float)p[2];
-    for (k = 0; k < 3; ++k) picture[y][x][k] = (unsigned char)(96 + item.cluster * (37u + 24u * (unsigned)k) % 160);
+    screen[v][2] = p[2] > 0.0 ? 1.0 / p[2] : 0.0;
+    screen[v][0] = WIDTH / 2 + p[0] * screen[v][2] * scale;
+    screen[v][1] = HEIGHT / 2 - p[1] * screen[v][2] * scale;
   }
+  for (v = 0; v < 3 * cluster.triangle_count; v += 3)
+    fill(screen[triangles[v]], screen[triangles[v + 1]], screen[triangles[v + 2]], item.cluster);
 }
+
 int main(int argc, char** argv) {
   uint32_t p, count, frame, frames = argc == 4 ? (uint32_t)atoi(argv[3]) : 0;
   size_t items = 0, capacity, i;
-  FILE* out;
   char name[4096];
   meshlode_selector* selector;
   const meshlode_mesh* mesh;
@@ -136,12 +160,11 @@ int main(int argc, char** argv) {
     if (meshlode_select_resident(selector, &view, &frustum, 1.0, resident, list, capacity, &items, &error))
       stop("view", error.text);
     memset(picture, 32, sizeof picture);
-    for (i = 0; i < WIDTH * HEIGHT; ++i) depth[i / WIDTH][i % WIDTH] = HUGE_VALF;
+    memset(depth, 0, sizeof depth);
     for (i = 0; i < items; ++i) draw(list[i], view.eye, axes);
-    if (snprintf(name, sizeof name, "%s%03u.ppm", argv[2], frame) < 0 || !(out = fopen(name, "wb")) ||
-        fprintf(out, "P6 %d %d 255\n", WIDTH, HEIGHT) < 0 || !fwrite(picture, sizeof picture, 1, out) || fclose(out))
-      stop(name, "cannot be written");
-    load_requests(selector); /* for the frames to come */
+    if (snprintf(name, sizeof name, "%s%03u.png", argv[2], frame) >= (int)sizeof name) stop(argv[2], "is too long");
+    if (write_png(name, &picture[0][0][0], WIDTH, HEIGHT)) stop(name, "cannot be written"); /* 5. */
+    load_requests(selector);                                                                /* for the frames to come */
   }
   printf("%u clusters, %u bytes in a pool of %u\n", (unsigned)items, (unsigned)used_bytes, (unsigned)pool_bytes);
   meshlode_destroy_selector(selector);
