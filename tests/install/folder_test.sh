@@ -33,7 +33,7 @@ use() {
   chroot "$root" "$program" build --cache cache rock.glb -o rock.lode 2>&1 | grep -F "up to date" || fail "not known again in $root"
   chroot "$root" "$program" verify --quiet --quick rock.lode --source rock.glb
   chroot "$root" "$program" render rock.lode -o rock.png --size 64x64
-  chroot "$root" "$program" report --help >/dev/null
+  if [ -e "$build/npm/meshlode.wasm" ]; then chroot "$root" "$program" info rock.lode --html page.html --quiet; fi
   said=$(chroot "$root" "$program" render rock.lode -o gpu.png --gpu 2>&1) || status=$?
   [ $status -eq 5 ] && [[ $said == *"no Vulkan loader"*libvulkan.so.1* ]] || fail "--gpu: exit code $status: $said"
   chroot "$root" "$program" --version | grep '^build id  *[0-9a-f]\{32\}$' || fail "no build id in $root"
