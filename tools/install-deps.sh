@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # install-deps.sh [--tests [--GROUP...]]: the Debian 12 packages that building meshlode needs; with --tests also what its tests
 # need (a second compiler for the comparison of content hashes, sample models), and by group what tools/test.sh --all=GROUP
-# needs beyond that: --browser a browser and npm, --docs the site of the documents, --examples OpenGL without a window, --npm
-# encoders' npm, --packages a bare root and npm, --portability another standard library and
+# needs beyond that: --browser a browser and npm, --docs the site of the documents, --examples what OpenGL and Vulkan programs need,
+# --npm encoders' npm, --packages a bare root and npm, --portability another standard library and
 # a compiler for another system, --slurm a scheduler, which the test of tools/cluster starts for itself (a system that starts the
 # services of what it installs may start munge's), --wasm Node. Nothing happens where all are there.
 set -euo pipefail
