@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <optional>
 
 #include "app/export/meshopt_encode.h"
@@ -17,9 +16,8 @@ constexpr double kMostShort = 65535.0;
 
 template <class T>
 std::vector<std::uint8_t> bytes_of(std::span<const T> values) {
-  std::vector<std::uint8_t> bytes(values.size_bytes());
-  if (!values.empty()) std::memcpy(bytes.data(), values.data(), bytes.size());
-  return bytes;
+  const auto* first = reinterpret_cast<const std::uint8_t*>(values.data());
+  return {first, first + values.size_bytes()};
 }
 
 /// The filter EXPONENTIAL: 8 bits of exponent above 24 of mantissa, both signed. Nothing where a value is no such
