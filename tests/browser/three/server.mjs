@@ -25,7 +25,9 @@ export async function serve(folders) {
     }
     const headers = { 'Content-Type': TYPES[extname(path)] ?? 'application/octet-stream', 'Accept-Ranges': 'bytes', 'Cache-Control': 'no-store',
       // A page that may measure its memory.
-      'Cross-Origin-Opener-Policy': 'same-origin', 'Cross-Origin-Embedder-Policy': 'require-corp' };
+      'Cross-Origin-Opener-Policy': 'same-origin', 'Cross-Origin-Embedder-Policy': 'require-corp',
+      // Pages of another origin may read the bytes, and not see Content-Range.
+      'Access-Control-Allow-Origin': '*' };
     const range = /^bytes=(\d+)-(\d+)$/.exec(request.headers.range ?? '');
     let answer = { status: 200, headers, body: file };
     if (range) {

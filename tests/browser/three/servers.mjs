@@ -79,6 +79,19 @@ export async function lookAtServers({ browser, server, open, pages, expect }) {
     'a corrupt page: mended, it is drawn when asked for again');
   await tab.close();
 
+  // Another origin that hides Content-Range: the size of the file is what its header says.
+  const other = server.origin.replace('127.0.0.1', 'localhost');
+  tab = await open(browser, server, null);
+  expect((await tab.value(`test.open('${other}/assets/terrain.lode')`)) === 'ok', 'another origin: opens');
+  await tab.value('test.frame()');
+  expect((await tab.value('test.settle()')) && (await tab.value('test.lode.statistics.drawnClusters')) === all.drawnClusters &&
+    (await tab.value('test.lode.statistics.fileBytes')) === all.fileBytes, 'another origin: the same is drawn');
+  server.fault = ({ bytes }) => ({ body: bytes.subarray(0, bytes.length - 1) });
+  const cut = await tab.value(`test.open('${other}/assets/terrain.lode')`);
+  expect(cut.message?.startsWith('head: '), `another origin, a file that is cut off: ${cut.message ?? cut}`);
+  server.fault = null;
+  await tab.close();
+
   // No ranges: the whole file, once. Slow: later, and the same.
   server.fault = ({ file }) => ({ status: 200, headers: {}, body: file });
   const before = server.log.length;
