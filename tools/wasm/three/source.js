@@ -12,7 +12,7 @@ export class LodeError extends Error {
 const ATTEMPTS = 3; // a dropped connection, a server that restarts; more attempts delay the error
 const WAIT_MS = 400; // before the second attempt, four times as long before the third: two seconds in all
 const STEP_BYTES = 65536; // due within each time limit: 2 kB/s at 30 s, below which a picture never comes
-const WHOLE_LIMIT = 2 ** 31; // of a file without ranges: a tab has no memory for more beside what it draws
+const MOST_BYTES = 2 ** 31; // of a range, or of a file without ranges: a tab has no memory for more beside what it draws
 
 export class RangeSource {
   bytesRead = 0;
@@ -36,12 +36,11 @@ export class RangeSource {
     if (offset < this.#first.length && !isFirst) {
       const have = this.#first.subarray(offset, offset + count);
       if (have.length === count) return have;
-      const bytes = new Uint8Array(count);
-      bytes.set(await this.read(offset + have.length, count - have.length), have.length);
-      bytes.set(have);
-      return bytes;
+      const rest = await this.read(offset + have.length, count - have.length);
+      return new Uint8Array(await new Blob([have, rest]).arrayBuffer());
     }
     const place = `bytes ${offset} to ${offset + count - 1}`;
+    if (count > MOST_BYTES) throw new LodeError(place, `more than ${MOST_BYTES} bytes`);
     for (let attempt = 1; ; ++attempt) {
       try {
         const bytes = await this.#readOnce(offset, count, isFirst, place);
@@ -66,7 +65,7 @@ export class RangeSource {
       return new Uint8Array(await this.#whole.slice(offset, end).arrayBuffer());
     }
     const abort = new AbortController();
-    const limit = this.#options.timeoutMs;
+    const { timeoutMs: limit, headers, credentials } = this.#options;
     let timer = 0;
     const arm = () => {
       clearTimeout(timer);
@@ -75,14 +74,13 @@ export class RangeSource {
     arm();
     try {
       ++this.requests;
-      const { headers, credentials } = this.#options;
       const asked = { ...headers, Range: `bytes=${offset}-${offset + count - 1}` };
       const response = await fetch(this.#file, { headers: asked, credentials, signal: abort.signal });
       const { status } = response;
       // Another attempt helps with time-outs, limits of requests and faults of the server.
       if (status !== 200 && status !== 206) fail(`the server answers ${status}`, status < 500 && status !== 408 && status !== 429);
       if (status === 200) {
-        const whole = await this.#body(response, WHOLE_LIMIT, arm, fail);
+        const whole = await this.#body(response, MOST_BYTES, arm, fail);
         const said = Number(response.headers.get('Content-Length') ?? whole.length);
         if (!response.headers.has('Content-Encoding') && said !== whole.length) fail(`${whole.length} of ${said} bytes came`);
         this.#setSize(whole.length, fail);
