@@ -30,6 +30,7 @@ namespace {
 /// Refuses what cannot be built, before any mesh is.
 Status check_build(const scene::Scene& scene, const PipelineOptions& options) {
   TRY(check_options(options, scene.meshes.size()));
+  TRY(check_material_count(scene.materials.size()));
   for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
     const std::string label = mesh_label(scene.meshes[i], i);
     TRY(check_mesh_counts(count_mesh(scene.meshes[i]), label));

@@ -1,25 +1,39 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A triangle's label while a mesh is built: its material and, in the highest four bits, the gap between it and the next
-// layer (src/builder/layers). A triangle without a gap has its material's number as its label.
+// A triangle's label while a mesh is built: its material and, in the highest eight bits, the gaps between it and the
+// next layers above and below it (src/builder/layers). A triangle without gaps has its material's number as its label.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 
 namespace meshlode::builder {
 
-inline constexpr std::uint32_t kGapShift = 28, kMaterialBits = (1U << kGapShift) - 1;
-/// Codes: 0 is no gap, 1 the reach, and each further one half of it.
+inline constexpr std::uint32_t kGapShift = 24, kMaterialBits = (1U << kGapShift) - 1;
+/// Codes of one gap: 0 is none, 1 the reach, and each further one half of it.
 inline constexpr std::uint32_t kNarrowestGap = 15;
+
+/// The codes of the gaps on both sides of a triangle, by its normal.
+struct GapPair {
+  std::uint32_t above = 0, below = 0;
+
+  [[nodiscard]] static constexpr GapPair of_byte(std::uint32_t byte) { return {byte & 15U, byte >> 4U}; }
+  [[nodiscard]] constexpr std::uint8_t byte() const { return static_cast<std::uint8_t>(below << 4U | above); }
+  /// The narrower gap of each side.
+  constexpr void narrow(const GapPair& other) {
+    above = std::max(above, other.above);
+    below = std::max(below, other.below);
+  }
+};
 
 [[nodiscard]] constexpr std::uint32_t material_of(std::uint32_t label) {
   return label & kMaterialBits;
 }
-[[nodiscard]] constexpr std::uint32_t gap_code_of(std::uint32_t label) {
-  return label >> kGapShift;
+[[nodiscard]] constexpr GapPair gap_pair_of(std::uint32_t label) {
+  return GapPair::of_byte(label >> kGapShift);
 }
-[[nodiscard]] constexpr std::uint32_t with_gap(std::uint32_t label, std::uint32_t code) {
-  return material_of(label) | code << kGapShift;
+[[nodiscard]] constexpr std::uint32_t with_gaps(std::uint32_t label, const GapPair& gaps) {
+  return material_of(label) | std::uint32_t{gaps.byte()} << kGapShift;
 }
 
 /// The gap that a code stands for. \pre code > 0

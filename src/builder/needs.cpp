@@ -8,6 +8,7 @@
 #include "base/byte_size.h"
 #include "base/memory.h"
 #include "builder/deviation/deviation.h"
+#include "builder/gap_label.h"
 #include "builder/plan/count_wedges.h"
 #include "builder/plan/plan.h"
 
@@ -83,6 +84,13 @@ MeshCounts count_mesh(const scene::SourceMesh& mesh) {
     counts.vertices += has_normals && primitive.normals.empty() ? primitive.indices.size() : primitive.positions.size();
   }
   return counts;
+}
+
+Status check_material_count(std::uint64_t count) {
+  static_assert(2 * kMaxMaterials <= kMaterialBits);
+  if (count <= kMaxMaterials) return Ok{};
+  return Error{ErrorCode::kUnsupported, "scene",
+               std::to_string(count) + " materials, at most " + std::to_string(kMaxMaterials) + " are built"};
 }
 
 Status check_mesh_counts(const MeshCounts& counts, const std::string& mesh) {

@@ -31,6 +31,12 @@ constexpr std::uint64_t kMaxMeshVertices = 4294967295;
 /// Error: kUnsupported, naming the mesh, its count and the limit.
 [[nodiscard]] Status check_mesh_counts(const MeshCounts& counts, const std::string& mesh);
 
+/// Materials of a scene: with those that aggregates derive from them, a triangle's label has room for twice as many
+/// (gap_label.h).
+constexpr std::uint64_t kMaxMaterials = 8'388'607;
+/// Error: kUnsupported, more materials than kMaxMaterials.
+[[nodiscard]] Status check_material_count(std::uint64_t count);
+
 /// What the whole process will take at most, the scene included: so much from the beginning to the end, and so much
 /// more while a mesh is in work. Measured (docs/log/build-time.md, "Memory") and meant to be a little more than what
 /// will be found.

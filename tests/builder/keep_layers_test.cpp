@@ -53,30 +53,23 @@ judge::IdTotals ids_of(const scene::Scene& scene, const PipelineOptions& options
   return judge::check_ids(*asset, scene, 2, 7, log);
 }
 
-TEST(KeepLayers, AThirdOfThePixelsAtMostStillShowsAnotherSurface) {
-  std::uint64_t without = 0, with = 0, pictures_without = 0, pictures_with = 0, facade_without = 0, facade_with = 0;
+TEST(KeepLayers, ATenthAtMostOfThePixelsAndPicturesStillShowsAnotherSurface) {
+  std::uint64_t without = 0, with = 0, pictures_without = 0, pictures_with = 0;
   for (const std::string& kind : lab::layered_kinds()) {
-    for (const std::uint64_t seed : {101U, 102U}) {  // the weights were chosen on others
+    for (const std::uint64_t seed : {101U, 102U}) {  // constants were chosen on others
       const scene::Scene scene = layered(kind, seed);
       const judge::IdTotals before = ids_of(scene, without_layers()), after = ids_of(scene, {});
       without += before.all.astray;
       with += after.all.astray;
       pictures_without += before.beyond_limit;
       pictures_with += after.beyond_limit;
-      if (kind == "facade") {
-        facade_without += before.all.astray;
-        facade_with += after.all.astray;
-      }
       RecordProperty(kind + std::to_string(seed),
                      std::to_string(before.all.astray) + " > " + std::to_string(after.all.astray));
     }
   }
   EXPECT_GT(pictures_without, 10U);  // else there is nothing to keep
-  // Where all of a mesh is a layer, as of shells and cloth, no triangle can be had from elsewhere: there it helps
-  // little.
-  EXPECT_LE(3 * with, without);
-  EXPECT_LT(pictures_with, pictures_without);
-  EXPECT_LE(20 * facade_with, facade_without);
+  EXPECT_LE(10 * with, without);
+  EXPECT_LE(10 * pictures_with, pictures_without);
 }
 
 TEST(KeepLayers, WithoutGapsNoByteChanges) {

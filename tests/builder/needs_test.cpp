@@ -35,6 +35,14 @@ TEST(Needs, CountsBeyondWhatIdsHoldAreRefusedInOneLine) {
   EXPECT_LT(static_cast<double>(kMaxMeshTriangles) * 3.0 / (1.0 - 0.85), std::exp2(32));
 }
 
+TEST(Needs, MaterialsThatALabelHasNoRoomForAreRefused) {
+  EXPECT_TRUE(check_material_count(kMaxMaterials));
+  const Status refused = check_material_count(kMaxMaterials + 1);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::kUnsupported);
+  EXPECT_NE(refused.error().message().find("8388608 materials"), std::string::npos) << refused.error().message();
+}
+
 TEST(Needs, FlatNormalsBesideOthersMakeAVertexOfEachCorner) {
   scene::SourceMesh mesh;
   mesh.primitives.resize(2);

@@ -66,10 +66,6 @@ Attempt attempt_group(const BuildPool& pool, const PreparedMesh& mesh, const std
                       const Shared& shared, const GroupTask& task, const DagOptions& options) {
   SimplifyInput finer = group_input(pool, mesh, clusters, shared);
   finer.gap_reach = mesh.gap_reach;
-  for (const ClusterId c : clusters) {
-    const GroupId made_from = pool.cluster(c).own_group;
-    if (made_from.is_valid()) finer.finer_error = std::max(finer.finer_error, pool.group(made_from).quadric_error);
-  }
   if (options.simplify.keep_topology) finer.is_place_taken = [&](const Vec3i& place) { return pool.had_place(place); };
   Attempt attempt = simplify_and_cluster(finer, task, options);
   if (!attempt.is_accepted) {

@@ -118,21 +118,25 @@ class GapFinder {
         }
         if (hit.is_crowded) return;
         if (hit.mesh == kNoId) continue;
-        mark(mesh, triangle, hit.at * gaps_[mesh].reach);
-        mark(hit.mesh, hit.triangle, hit.gap);
+        mark(mesh, triangle, hit.at * gaps_[mesh].reach, side > 0.0);
+        mark(hit.mesh, hit.triangle, hit.gap, hit.is_from_above);
       }
     }
   }
 
   /// The narrowest gap of those that are found counts, whoever finds it first.
-  void mark(std::uint32_t mesh, std::uint32_t triangle, double gap) {
+  void mark(std::uint32_t mesh, std::uint32_t triangle, double gap, bool is_above) {
     MeshGaps& gaps = gaps_[mesh];
     if (gaps.codes.empty()) return;
-    const auto code = static_cast<std::uint8_t>(code_of_gap(gap, gaps.reach));
+    const std::uint32_t code = code_of_gap(gap, gaps.reach);
+    const GapPair found = is_above ? GapPair{code, 0} : GapPair{0, code};
     const std::atomic_ref<std::uint8_t> kept(gaps.codes[triangle]);
-    std::uint8_t before = kept.load(std::memory_order_relaxed);
-    while (before < code && !kept.compare_exchange_weak(before, code, std::memory_order_relaxed)) {
-    }
+    std::uint8_t before = kept.load(std::memory_order_relaxed), after = 0;
+    do {
+      GapPair both = GapPair::of_byte(before);
+      both.narrow(found);
+      after = both.byte();
+    } while (after != before && !kept.compare_exchange_weak(before, after, std::memory_order_relaxed));
   }
 
   PlacedShapes placed_;
@@ -146,11 +150,14 @@ GapSummary summarize(const MeshGaps& gaps) {
   GapSummary out;
   std::uint32_t widest = kNarrowestGap, narrowest = 1;
   for (std::uint32_t t = 0; t < gaps.codes.size(); ++t) {
-    const std::uint32_t code = gaps.codes[t];
-    if (code == 0) continue;
+    if (gaps.codes[t] == 0) continue;
     ++out.triangles;
-    widest = std::min(widest, code);
-    narrowest = std::max(narrowest, code);
+    const GapPair pair = GapPair::of_byte(gaps.codes[t]);
+    for (const std::uint32_t code : {pair.above, pair.below}) {
+      if (code == 0) continue;
+      widest = std::min(widest, code);
+      narrowest = std::max(narrowest, code);
+    }
     if (out.first.size() < kMostListed) out.first.push_back(t);
   }
   if (out.triangles == 0) return out;

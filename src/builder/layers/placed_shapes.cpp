@@ -95,7 +95,9 @@ void meet_shape(const Shape& shape, std::uint32_t mesh, const LayerRay& ray, con
     const double at = meet(corners, ray, both_ways, shape.per_unit, back);
     if (!(at < hit.at) && !(at == hit.at && at < 1.0 && is_less(corners, hit.corners))) return true;
     const Vec3d along = ray.along * shape.per_unit;
-    hit = {at, mesh, triangle, at * std::sqrt(glm::dot(along, along)) / shape.per_unit, corners, false};
+    const Vec3d e = (corners[1] - corners[0]) * shape.per_unit, f = (corners[2] - corners[0]) * shape.per_unit;
+    const double gap = at * std::sqrt(glm::dot(along, along)) / shape.per_unit;
+    hit = {at, mesh, triangle, gap, glm::dot(along, glm::cross(e, f)) < 0.0, corners, false};
     return true;
   });
 }

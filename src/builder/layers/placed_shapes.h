@@ -50,9 +50,10 @@ struct LayerRay {
 struct LayerHit {
   double at = 1.0;  ///< along the ray
   std::uint32_t mesh = kNoId, triangle = kNoId;
-  double gap = 0.0;           ///< in the frame of that mesh
-  TriangleCorners corners{};  ///< canonical, in that frame: of two in one place the lesser is met
-  bool is_crowded = false;    ///< too many triangles are near to the ray: no layers, and what was met is not all
+  double gap = 0.0;            ///< in the frame of that mesh
+  bool is_from_above = false;  ///< the ray comes from the side that its normal points to
+  TriangleCorners corners{};   ///< canonical, in that frame: of two in one place the lesser is met
+  bool is_crowded = false;     ///< too many triangles are near to the ray: no layers, and what was met is not all
 };
 
 class PlacedShapes {

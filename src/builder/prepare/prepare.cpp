@@ -182,18 +182,21 @@ std::uint64_t count_pieces(const PreparedMesh& mesh) {
 void spread_gaps(PreparedMesh& mesh) {
   std::vector<std::uint8_t> at_position(mesh.positions.size(), 0);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    const auto code = static_cast<std::uint8_t>(gap_code_of(mesh.triangle_material[t]));
     for (const std::uint32_t wedge : mesh.triangles[t]) {
       std::uint8_t& at = at_position[mesh.wedge_position[wedge]];
-      at = std::max(at, code);
+      GapPair narrowest = GapPair::of_byte(at);
+      narrowest.narrow(gap_pair_of(mesh.triangle_material[t]));
+      at = narrowest.byte();
     }
   }
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     std::uint32_t& label = mesh.triangle_material[t];
-    if (gap_code_of(label) != 0) continue;
-    std::uint8_t code = 0;
-    for (const std::uint32_t wedge : mesh.triangles[t]) code = std::max(code, at_position[mesh.wedge_position[wedge]]);
-    label = with_gap(label, code);
+    if (gap_pair_of(label).byte() != 0) continue;
+    GapPair narrowest;
+    for (const std::uint32_t wedge : mesh.triangles[t]) {
+      narrowest.narrow(GapPair::of_byte(at_position[mesh.wedge_position[wedge]]));
+    }
+    label = with_gaps(label, narrowest);
   }
 }
 
@@ -225,7 +228,7 @@ Result<PreparedMesh> prepare_mesh(const scene::SourceMesh& source, const Attribu
 
   Corners corners = gather_corners(source, layout);
   for (std::size_t t = 0; t < options.gaps.size(); ++t) {
-    corners.materials[t] = with_gap(corners.materials[t], options.gaps[t]);
+    corners.materials[t] = with_gaps(corners.materials[t], GapPair::of_byte(options.gaps[t]));
   }
   if (!are_finite(corners)) return Error{ErrorCode::kInvalid, where, "a position is not finite"};
   mesh.dropped_degenerate = drop_undrawn(corners);

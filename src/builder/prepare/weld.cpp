@@ -145,7 +145,7 @@ struct CanonicalTriangle {
   std::uint32_t material;              ///< and gap: duplicates differ in it at most, and the narrowest comes first
   bool operator<(const CanonicalTriangle& other) const {
     const auto key = [](const CanonicalTriangle& t) {
-      return std::tuple(t.exact, material_of(t.material), kNarrowestGap - gap_code_of(t.material));
+      return std::tuple(t.exact, material_of(t.material), 255U - gap_pair_of(t.material).byte());
     };
     return key(*this) < key(other);
   }

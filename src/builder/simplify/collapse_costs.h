@@ -14,7 +14,6 @@
 #include "builder/simplify/attribute_scales.h"
 #include "builder/simplify/collapse_mesh.h"
 #include "builder/simplify/collapse_star.h"
-#include "builder/simplify/gap_weights.h"
 #include "builder/simplify/group_locks.h"
 #include "builder/simplify/group_places.h"
 #include "builder/simplify/placement.h"
@@ -48,6 +47,8 @@ class CollapseCosts {
   void add_walls(std::span<const HeldEdge> edges) { surface_.add_walls(edges, mesh_, places_); }
 
   [[nodiscard]] Weighed weigh(const CollapseMesh::Ends& ends);
+  /// The cost with the vertex at `place`, instead of the best place.
+  [[nodiscard]] double weigh_at(const CollapseMesh::Ends& ends, const Vec3d& place);
   /// Of the star's collapse. \pre neither end is a hub
   void collect_classes(const CollapseStar& star);
   /// Of the star collected last.
@@ -66,7 +67,7 @@ class CollapseCosts {
   /// Of an edge at a hub, that is not weighed: it is refused when it comes up.
   static constexpr double kHubCost = 1e30;
 
-  void add_faces(const SimplifyInput& input);
+  void add_faces();
   [[nodiscard]] std::optional<double> add_attributes(const CollapseMesh::Ends& ends, const Vec3d& given,
                                                      BasicQuadric<Real>& total);
 
@@ -89,12 +90,11 @@ CollapseCosts<Numbers, C>::CollapseCosts(const SimplifyInput& input, const Simpl
       only_wedge_(mesh),
       surface_(input.positions.size(), options.border_weight),
       attributes_(input, attribute_scales(input, options, mesh, places), only_wedge_.has_seams()) {
-  add_faces(input);
+  add_faces();
 }
 
 template <class Numbers, std::size_t C>
-void CollapseCosts<Numbers, C>::add_faces(const SimplifyInput& input) {
-  const GapWeights weights(input);
+void CollapseCosts<Numbers, C>::add_faces() {
   for (std::uint32_t t = 0; t < mesh_.triangle_count(); ++t) {
     if (!mesh_.is_alive(t)) continue;
     const Face face = face_of(mesh_, places_, t);
@@ -103,8 +103,7 @@ void CollapseCosts<Numbers, C>::add_faces(const SimplifyInput& input) {
     if (has_attributes()) {
       of_attributes = attributes_.add_face({mesh_.wedge(3 * t), mesh_.wedge(3 * t + 1), mesh_.wedge(3 * t + 2)}, face);
     }
-    surface_.add_face({mesh_.vertex(3 * t), mesh_.vertex(3 * t + 1), mesh_.vertex(3 * t + 2)}, face, of_attributes,
-                      weights.of(input.triangle_material[t]));
+    surface_.add_face({mesh_.vertex(3 * t), mesh_.vertex(3 * t + 1), mesh_.vertex(3 * t + 2)}, face, of_attributes);
   }
 }
 
@@ -120,6 +119,15 @@ typename CollapseCosts<Numbers, C>::Weighed CollapseCosts<Numbers, C>::weigh(con
   const Vec3d along = pb - pa;
   out.cost = cost_of_collapse(total, out.place, *fixed_error, glm::dot(along, along));
   return out;
+}
+
+template <class Numbers, std::size_t C>
+double CollapseCosts<Numbers, C>::weigh_at(const CollapseMesh::Ends& ends, const Vec3d& place) {
+  const Vec3d &pa = places_[ends[0]], &pb = places_[ends[1]];
+  BasicQuadric<Real> total = surface_.around(ends[0], ends[1]);
+  const std::optional<double> fixed_error = add_attributes(ends, place, total);
+  const Vec3d along = pb - pa;
+  return fixed_error ? cost_of_collapse(total, place, *fixed_error, glm::dot(along, along)) : kHubCost;
 }
 
 /// The error of fixed values, or none at a hub.

@@ -21,6 +21,7 @@
 #include "builder/simplify/collapse_star.h"
 #include "builder/simplify/edge_heap.h"
 #include "builder/simplify/edge_uses.h"
+#include "builder/simplify/gap_guard.h"
 #include "builder/simplify/group_locks.h"
 #include "builder/simplify/group_places.h"
 #include "builder/simplify/guards.h"
@@ -58,6 +59,8 @@ class GroupSimplifier {
   /// So many times that for what is painted, where that is promised: its largest distance alone then orders collapses
   /// that move it. (With 1 cuts that keep a promise need more triangles, with 64 no fewer.)
   static constexpr double kPaintedFactor = 16.0;
+  /// So many times the cost of a distance for what goes too far into a gap after all.
+  static constexpr double kGapFactor = 64.0;
   /// What breaking the link condition costs, as a factor: small holes and handles close when everything else has become
   /// about ten times as far off.
   static constexpr double kTopologyPrice = 10.0;
@@ -66,6 +69,7 @@ class GroupSimplifier {
   struct Candidate {
     std::uint32_t versions = 0;  ///< of its ends: they only grow, so that their sum is the same where neither has
     bool may_break_topology = false;
+    bool keeps_gaps = false;  ///< its place and its price are those of keep_gaps()
     Vec3f place{0.0F};
   };
   void run_passes();
@@ -84,6 +88,8 @@ class GroupSimplifier {
   [[nodiscard]] Obstacle gather(const CollapseMesh::Ends& ends);
   [[nodiscard]] bool find_target(const Candidate& candidate);
   [[nodiscard]] Obstacle ask_guards(Candidate& candidate, float cost);
+  [[nodiscard]] bool keep_gaps(std::uint32_t edge);
+  [[nodiscard]] double weight_of_star() const;
   [[nodiscard]] Obstacle ask_price(float cost);
   void collapse();
   void tell_what_vanished();
@@ -97,6 +103,7 @@ class GroupSimplifier {
   CollapseCosts<Numbers, Capacity> costs_;
   LeftBehind left_behind_;
   PaintedGuard<Real, Capacity> painted_;
+  GapGuard gaps_;
   std::optional<OwnPlaces> own_places_;  ///< where topology is kept
   std::vector<std::uint8_t> is_border_;  ///< per vertex
   std::vector<std::uint32_t> version_;   ///< per vertex
@@ -126,6 +133,7 @@ GroupSimplifier<Numbers, C>::GroupSimplifier(const SimplifyInput& input, const S
       costs_(input, options, mesh_, places_, locks_),
       left_behind_(input.witnesses, input.positions),
       painted_(input, options.painted, places_),
+      gaps_(input, places_),
       version_(input.positions.size(), 0),
       marks_(input.positions.size()) {
   if (options.keep_topology) own_places_.emplace(input);
@@ -219,7 +227,7 @@ template <class Numbers, std::size_t C>
 double GroupSimplifier<Numbers, C>::weigh(std::uint32_t edge) {
   const CollapseMesh::Ends& ends = mesh_.ends(edge);
   const auto [cost, place] = costs_.weigh(ends);
-  candidates_[edge] = {versions_of(ends), false, Vec3f(place)};
+  candidates_[edge] = {versions_of(ends), false, false, Vec3f(place)};
   return cost;
 }
 
@@ -229,6 +237,7 @@ Obstacle GroupSimplifier<Numbers, C>::try_collapse(std::uint32_t edge, float cos
   if (obstacle != Obstacle::kNone) return obstacle;
   costs_.collect_classes(star_);
   if (!find_target(candidates_[edge])) return Obstacle::kTopology;
+  if (gaps_.is_on() && !keep_gaps(edge)) return Obstacle::kPutBack;
   obstacle = ask_guards(candidates_[edge], cost);
   if (obstacle != Obstacle::kNone) return obstacle;
   obstacle = ask_price(cost);
@@ -264,6 +273,20 @@ bool GroupSimplifier<Numbers, C>::find_target(const Candidate& candidate) {
   return true;
 }
 
+/// A collapse that would move a surface too far into a gap gets another place, and waits for its turn at what it costs
+/// there: false.
+template <class Numbers, std::size_t C>
+bool GroupSimplifier<Numbers, C>::keep_gaps(std::uint32_t edge) {
+  Candidate& candidate = candidates_[edge];
+  if (candidate.keeps_gaps || !(gaps_.excess(mesh_, places_, star_, star_.target) > 0.0)) return true;
+  candidate.keeps_gaps = true;
+  const Vec3d place = is_locked(star_.a.vertex) ? star_.target : gaps_.move_out(mesh_, places_, star_);
+  candidate.place = Vec3f(place);
+  const double excess = gaps_.excess(mesh_, places_, star_, place);
+  price_ = costs_.weigh_at(mesh_.ends(edge), place) + kGapFactor * weight_of_star() * excess * excess;
+  return false;
+}
+
 template <class Numbers, std::size_t C>
 Obstacle GroupSimplifier<Numbers, C>::ask_guards(Candidate& candidate, float cost) {
   if (!keeps_shared_edges(mesh_, locks_, star_)) return Obstacle::kLocked;
@@ -287,14 +310,19 @@ Obstacle GroupSimplifier<Numbers, C>::ask_guards(Candidate& candidate, float cos
   return !are_flips_relaxed_ && turns_over(star_) ? Obstacle::kFlips : Obstacle::kNone;
 }
 
+/// What a squared distance costs that the collapse moves all that its vertex stands for by.
+template <class Numbers, std::size_t C>
+double GroupSimplifier<Numbers, C>::weight_of_star() const {
+  const double weight = costs_.surface().weight(star_.a.vertex) + costs_.surface().weight(star_.b.vertex);
+  return std::sqrt(std::max(2.0 * costs_.surface().total_weight() / mesh_.alive_count(), weight));
+}
+
 /// What leaving the old surface behind, or reaching beyond it, costs, and moving what is promised of what is painted:
 /// where that is far more than the quadrics say, the collapse waits for its turn at that price.
 template <class Numbers, std::size_t C>
 Obstacle GroupSimplifier<Numbers, C>::ask_price(float cost) {
   const std::uint32_t a = star_.a.vertex, b = star_.b.vertex;
-  const double weight = costs_.surface().weight(a) + costs_.surface().weight(b);
-  const double mean_weight = 2.0 * costs_.surface().total_weight() / mesh_.alive_count();
-  const double per_distance2 = kGuardShare * std::sqrt(std::max(mean_weight, weight));
+  const double per_distance2 = kGuardShare * weight_of_star();
   const auto is_too_much = [&](double price) {
     price_ = price;
     return EdgeHeap::key_of(price) > cost;

@@ -16,6 +16,11 @@ inline constexpr double kPull = 1e-6;
 /// How far from the edge's middle a new vertex may lie, in edge lengths.
 inline constexpr double kMaxOffset = 1.5;
 
+[[nodiscard]] inline bool is_near_edge(const Vec3d& place, const Vec3d& pa, const Vec3d& pb) {
+  const Vec3d offset = place - (pa + pb) * 0.5, edge = pb - pa;
+  return glm::dot(offset, offset) <= kMaxOffset * kMaxOffset * glm::dot(edge, edge);
+}
+
 /// The best point of the edge, then its ends: E along the edge is a parabola.
 template <class Real>
 [[nodiscard]] Vec3d place_on_edge(const BasicQuadric<Real>& total, const Vec3d& pa, const Vec3d& pb) {
@@ -48,15 +53,11 @@ template <class Real>
 [[nodiscard]] Vec3d place_vertex(BasicQuadric<Real>& total, const Vec3d& pa, const Vec3d& pb,
                                  bool has_fallback = true) {
   using Vec = glm::vec<3, Real>;
-  const Vec3d edge = pb - pa;
   const Vec3d middle = (pa + pb) * 0.5;
   Vec best;
   if (!has_fallback) return total.minimize(best, Real(0)) ? Vec3d(best) : middle;
   total.add_point(Vec(middle), static_cast<Real>(kPull) * total.weight);
-  if (total.minimize(best)) {
-    const Vec3d offset = Vec3d(best) - middle;
-    if (glm::dot(offset, offset) <= kMaxOffset * kMaxOffset * glm::dot(edge, edge)) return Vec3d(best);
-  }
+  if (total.minimize(best) && is_near_edge(Vec3d(best), pa, pb)) return Vec3d(best);
   return place_on_edge(total, pa, pb);
 }
 

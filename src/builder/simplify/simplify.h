@@ -63,9 +63,8 @@ struct SimplifyInput {
   std::vector<std::uint8_t> is_wedge_shared;  ///< per wedge: another group has it too, so shading is smooth across
   std::vector<float> wedge_attributes;
   std::vector<WedgeTriangle> triangles;
-  std::vector<std::uint32_t> triangle_material;  ///< and gap (gap_label.h)
+  std::vector<std::uint32_t> triangle_material;  ///< and gaps (gap_label.h)
   double gap_reach = 0.0;                        ///< of the gaps, object units
-  double finer_error = 0.0;                      ///< object units: the largest quadric_error of what it was made from
   /// Where keep_topology is asked: whether another group has, or ever had, a vertex there. None: nowhere.
   std::function<bool(const Vec3i& place)> is_place_taken;
 

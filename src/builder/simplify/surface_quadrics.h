@@ -46,10 +46,9 @@ class SurfaceQuadrics {
   SurfaceQuadrics(std::size_t vertex_count, double border_weight)
       : vertex_(vertex_count), wall_of_(vertex_count, kNoId), border_weight_(static_cast<Real>(border_weight)) {}
 
-  /// `of_attributes` is what AttributeQuadrics::add_face() returned. `emphasis`: how many times the plane counts in
-  /// what a collapse costs; the error that is told does not know of it. \pre face.twice_area > 0
+  /// `of_attributes` is what AttributeQuadrics::add_face() returned. \pre face.twice_area > 0
   void add_face(const std::array<std::uint32_t, 3>& vertices, const Face& face,
-                const BasicQuadric<Real>& of_attributes = {}, double emphasis = 1.0);
+                const BasicQuadric<Real>& of_attributes = {});
   /// Walls stand upright on their triangles, and weigh with the square of the edge's length.
   void add_walls(std::span<const HeldEdge> edges, const CollapseMesh& mesh, const GroupPlaces& places);
   /// A wedge of the vertex has lost its last triangle, and its error counts no more.
@@ -89,13 +88,12 @@ class SurfaceQuadrics {
 
 template <class Real>
 void SurfaceQuadrics<Real>::add_face(const std::array<std::uint32_t, 3>& vertices, const Face& face,
-                                     const BasicQuadric<Real>& of_attributes, double emphasis) {
+                                     const BasicQuadric<Real>& of_attributes) {
   const double area = 0.5 * face.twice_area;
   BasicQuadric<Real> plane;
   plane.add_plane(glm::vec<3, Real>(face.normal), static_cast<Real>(-glm::dot(face.normal, face.p)),
                   static_cast<Real>(area));
   BasicQuadric<Real> all = plane;
-  if (emphasis > 1.0) all.add_scaled(plane, static_cast<Real>(emphasis - 1.0));
   all += of_attributes;
   for (const std::uint32_t v : vertices) {
     vertex_[v].all += all;

@@ -62,7 +62,8 @@ std::size_t count_gaps(const MeshGaps& gaps, double gap) {
   for (const std::uint8_t code : gaps.codes) {
     if (code == 0) continue;
     ++count;
-    const double found = gap_of_code(code, gaps.reach);
+    const GapPair pair = GapPair::of_byte(code);
+    const double found = gap_of_code(std::max(pair.above, pair.below), gaps.reach);
     EXPECT_GE(found, gap / 1.5);
     EXPECT_LE(found, gap * 1.5);
   }
@@ -79,9 +80,13 @@ TEST(FindGaps, CodesAreTheNearestPowerInRatio) {
     EXPECT_EQ(code_of_gap(0.75 * gap_of_code(code, 3.0), 3.0), code);
     EXPECT_EQ(code_of_gap(0.65 * gap_of_code(code, 3.0), 3.0), code + 1);
   }
-  const std::uint32_t label = with_gap(with_gap(17, 9), 3);
+  const std::uint32_t label = with_gaps(with_gaps(17, {9, 15}), {3, 11});
   EXPECT_EQ(material_of(label), 17U);
-  EXPECT_EQ(gap_code_of(label), 3U);
+  EXPECT_EQ(gap_pair_of(label).above, 3U);
+  EXPECT_EQ(gap_pair_of(label).below, 11U);
+  GapPair pair = gap_pair_of(label);
+  pair.narrow({5, 2});
+  EXPECT_EQ(pair.byte(), GapPair(5, 11).byte());
 }
 
 TEST(FindGaps, TwoSheetsOfOneMeshHaveTheGapBetweenThem) {
@@ -90,6 +95,42 @@ TEST(FindGaps, TwoSheetsOfOneMeshHaveTheGapBetweenThem) {
   ASSERT_EQ(gaps[0].codes.size(), 4U * kCells * kCells);
   // Large triangles have four rays each.
   EXPECT_EQ(count_gaps(gaps[0], 0.01), gaps[0].codes.size());
+}
+
+/// Whether all gaps of the mesh are on that side, and there are some.
+void expect_side(const MeshGaps& gaps, bool is_above) {
+  EXPECT_FALSE(gaps.codes.empty());
+  for (const std::uint8_t code : gaps.codes) {
+    const GapPair pair = GapPair::of_byte(code);
+    EXPECT_EQ(pair.above != 0, is_above && code != 0);
+    EXPECT_EQ(pair.below != 0, !is_above && code != 0);
+  }
+}
+
+TEST(FindGaps, EachSheetHasTheGapOnTheSideOfTheOther) {
+  const Scene scene = scene_of_meshes({sheet(0.0), sheet(0.01)});
+  expect_side(gaps_of(scene)[0], true);
+  expect_side(gaps_of(scene)[1], false);
+  // Alone: what rays of the other meet is told the side that they come from.
+  expect_side(find_gaps(scene, std::vector<std::uint8_t>{1, 0})[0], true);
+  expect_side(find_gaps(scene, std::vector<std::uint8_t>{0, 1})[1], false);
+  Scene turned = scene;  // upside down, and mirrored: by their own normals nothing changes
+  const Mat4d over(1.0, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, 1.0);
+  const Mat4d mirrored(1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, 1.0);
+  for (const Mat4d& moved : {over, mirrored, over * mirrored}) {
+    for (scene::SceneInstance& instance : turned.instances) instance.transform = moved;
+    expect_side(gaps_of(turned)[0], true);
+    expect_side(gaps_of(turned)[1], false);
+  }
+  // Two sheets that face each other: each is above the other, by its normal.
+  Scene facing = scene_of_meshes({sheet(0.0), sheet(0.01, true)});
+  facing.materials[0].double_sided = true;
+  for (const MeshGaps& gaps : gaps_of(facing)) expect_side(gaps, true);
+  const std::vector<MeshGaps> three = gaps_of(scene_of_meshes({sheet(0.0), sheet(0.01), sheet(0.02)}));
+  for (const std::uint8_t code : three[1].codes) {
+    EXPECT_NE(GapPair::of_byte(code).above, 0U);
+    EXPECT_NE(GapPair::of_byte(code).below, 0U);
+  }
 }
 
 TEST(FindGaps, SoHaveSheetsOfTwoMeshes) {

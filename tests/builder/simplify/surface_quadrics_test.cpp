@@ -8,7 +8,6 @@
 
 #include "builder/simplify/attribute_scales.h"
 #include "builder/simplify/edge_uses.h"
-#include "builder/simplify/gap_weights.h"
 #include "support/drawn_mesh.h"
 
 namespace meshlode::builder {
@@ -200,41 +199,6 @@ TEST(AttributeScales, NormalsAndColoursWeighLessOnFineMeshesOnly) {
   ASSERT_EQ(scales.size(), 7U);
   EXPECT_EQ(scales[2], SimplifyOptions{}.normal_weight * 0.05) << "ten triangles are coarse: their side is capped";
   EXPECT_EQ(scales[3], SimplifyOptions{}.color_weight * 0.05);
-}
-
-TEST(GapWeights, PlanesWeighMoreAsTheErrorComesNearTheGap) {
-  SimplifyInput input;
-  input.gap_reach = 1.0;
-  const std::uint32_t label = with_gap(7, 4);  // a gap of an eighth
-  const auto weight_at = [&](double error) {
-    input.finer_error = error;
-    return GapWeights(input).of(label);
-  };
-  EXPECT_EQ(weight_at(0.0), 1.0);
-  EXPECT_EQ(weight_at(0.125 / 4.0), 1.0);  // far enough below
-  EXPECT_DOUBLE_EQ(weight_at(0.125), 9.0);
-  EXPECT_EQ(weight_at(100.0), 64.0);
-  EXPECT_EQ(GapWeights(input).of(7), 1.0);  // no gap
-  input.gap_reach = 0.0;
-  EXPECT_EQ(GapWeights(input).of(label), 1.0);  // nobody asks
-}
-
-TEST(SurfaceQuadrics, EmphasisCountsInTheCostAndNotInTheErrorThatIsTold) {
-  const DrawnMesh drawn = closed_fan();
-  SurfaceQuadrics<double> plain(drawn.points.size(), 1.0), emphasized(drawn.points.size(), 1.0);
-  for (std::uint32_t t = 0; t < drawn.mesh.triangle_count(); ++t) {
-    const std::array<std::uint32_t, 3> v{drawn.mesh.vertex(3 * t), drawn.mesh.vertex(3 * t + 1),
-                                         drawn.mesh.vertex(3 * t + 2)};
-    plain.add_face(v, face_of(drawn.mesh, drawn.places, t));
-    emphasized.add_face(v, face_of(drawn.mesh, drawn.places, t), {}, 16.0);
-  }
-  const Vec3d off = drawn.places[0] + Vec3d(0.0, 0.0, 0.5);
-  const double cost = plain.around(0, 1).evaluate(off);
-  EXPECT_GT(cost, 0.0);
-  EXPECT_NEAR(emphasized.around(0, 1).evaluate(off), 16.0 * cost, 1e-9 * cost);
-  EXPECT_EQ(emphasized.weight(0), plain.weight(0));
-  EXPECT_EQ(emphasized.total_weight(), plain.total_weight());
-  EXPECT_EQ(emphasized.join(0, 1, off), plain.join(0, 1, off));
 }
 
 }  // namespace
