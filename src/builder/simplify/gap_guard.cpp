@@ -10,7 +10,15 @@ namespace meshlode::builder {
 
 namespace {
 
-/// Of a gap: then the two that it lies between cannot cross.
+// Chosen on 60 layered scenes (random_scenes --layers, seeds 830000 to 830059), as is kGapFactor (group_simplifier.h):
+// the pictures that V211 finds, and the triangles that are drawn. Without: 189, 3,307,036.
+//   kShare      0.25       1          0.5        0.5        0.5        0.5        0.5        0.5
+//   kMostMoves  8          8          2          16         8          8          8          8
+//   kGapFactor  64         64         64         64         0          16         256        64
+//   pictures    16         12         21         11         45         14         10         10
+//   triangles   3,908,922  3,606,013  3,738,620  3,752,121  3,580,156  3,698,403  3,800,112  3,747,182
+
+/// Of a gap. One half each: two surfaces that move so far do not cross.
 constexpr double kShare = 0.5;
 /// Planes that a place is moved to the right side of, one after the other, the farthest first.
 constexpr int kMostMoves = 8;
@@ -19,7 +27,8 @@ constexpr int kMostMoves = 8;
 
 GapGuard::GapGuard(const SimplifyInput& input, const GroupPlaces& places) : labels_(input.triangle_material) {
   if (!(input.gap_reach > 0.0)) return;
-  is_on_ = std::any_of(labels_.begin(), labels_.end(), [](std::uint32_t label) { return gap_pair_of(label).byte() != 0; });
+  is_on_ =
+      std::any_of(labels_.begin(), labels_.end(), [](std::uint32_t label) { return gap_pair_of(label).byte() != 0; });
   const double step = input.grid.step();
   for (std::uint32_t code = 1; code <= kNarrowestGap; ++code) {
     // A vertex is rounded to the grid, by less than a step.

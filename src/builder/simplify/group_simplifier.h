@@ -59,7 +59,7 @@ class GroupSimplifier {
   /// So many times that for what is painted, where that is promised: its largest distance alone then orders collapses
   /// that move it. (With 1 cuts that keep a promise need more triangles, with 64 no fewer.)
   static constexpr double kPaintedFactor = 16.0;
-  /// So many times the cost of a distance for what goes too far into a gap after all.
+  /// So many times what a distance costs, for what goes too far into a gap after all (gap_guard.cpp).
   static constexpr double kGapFactor = 64.0;
   /// What breaking the link condition costs, as a factor: small holes and handles close when everything else has become
   /// about ten times as far off.
