@@ -88,7 +88,14 @@ class GapFinder {
   }
 
   std::vector<MeshGaps> take() {
-    for (MeshGaps& gaps : gaps_) {
+    for (std::size_t mesh = 0; mesh < gaps_.size(); ++mesh) {
+      MeshGaps& gaps = gaps_[mesh];
+      // What lies under another surface is seen neither from there nor, one-sided, from behind: it need not keep above
+      // what is below it, and so has a side to move to.
+      for (std::uint32_t t = 0; t < gaps.codes.size(); ++t) {
+        const GapPair pair = GapPair::of_byte(gaps.codes[t]);
+        if (pair.above != 0 && !placed_.shape(mesh).faces_both_ways(t)) gaps.codes[t] = GapPair{pair.above, 0}.byte();
+      }
       const bool has_some =
           std::any_of(gaps.codes.begin(), gaps.codes.end(), [](std::uint8_t code) { return code != 0; });
       if (!has_some) gaps.codes = {};

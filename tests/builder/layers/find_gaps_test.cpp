@@ -127,8 +127,16 @@ TEST(FindGaps, EachSheetHasTheGapOnTheSideOfTheOther) {
   Scene facing = scene_of_meshes({sheet(0.0), sheet(0.01, true)});
   facing.materials[0].double_sided = true;
   for (const MeshGaps& gaps : gaps_of(facing)) expect_side(gaps, true);
-  const std::vector<MeshGaps> three = gaps_of(scene_of_meshes({sheet(0.0), sheet(0.01), sheet(0.02)}));
-  for (const std::uint8_t code : three[1].codes) {
+}
+
+TEST(FindGaps, ASheetBetweenTwoHasTheGapAboveAloneUnlessItsBackIsSeen) {
+  Scene scene = scene_of_meshes({sheet(0.0), sheet(0.01), sheet(0.02)});
+  expect_side(gaps_of(scene)[0], true);
+  expect_side(gaps_of(scene)[1], true);
+  expect_side(gaps_of(scene)[2], false);
+  scene.materials[0].double_sided = true;
+  const std::vector<MeshGaps> gaps = gaps_of(scene);
+  for (const std::uint8_t code : gaps[1].codes) {
     EXPECT_NE(GapPair::of_byte(code).above, 0U);
     EXPECT_NE(GapPair::of_byte(code).below, 0U);
   }
