@@ -115,18 +115,18 @@ class GapFinder {
     for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(due); ++i) {
       const Vec3d from = sample_point(caster.corners, i);
       const std::uint64_t first = places == 0 ? 0 : random.below(places);
-      for (const double side : {1.0, -1.0}) {
-        LayerRay ray{from, caster.normal * (side * gaps_[mesh].reach), caster.normal, shape.faces_both_ways(triangle),
-                     kLeastGap};
-        LayerHit hit;
-        if (is_asked) placed_.meet_itself(mesh, ray, hit);
-        for (std::size_t k = 0; k < std::min(kPlaces, places) && !hit.is_crowded; ++k) {
-          placed_.meet_others(mesh, (first + k) % places, ray, hit);
-        }
-        if (hit.is_crowded) return;
-        if (hit.mesh == kNoId) continue;
-        mark(mesh, triangle, hit.at * gaps_[mesh].reach, side > 0.0);
-        mark(hit.mesh, hit.triangle, hit.gap, hit.is_from_above);
+      const LayerRay ray{from, caster.normal * gaps_[mesh].reach, caster.normal, shape.faces_both_ways(triangle),
+                         kLeastGap};
+      LayerHits hits;
+      if (is_asked) placed_.meet_itself(mesh, ray, hits);
+      for (std::size_t k = 0; k < std::min(kPlaces, places) && !hits.is_crowded; ++k) {
+        placed_.meet_others(mesh, (first + k) % places, ray, hits);
+      }
+      if (hits.is_crowded) return;
+      for (const LayerHit* hit : {&hits.ahead, &hits.behind}) {
+        if (hit->mesh == kNoId) continue;
+        mark(mesh, triangle, hit->at * gaps_[mesh].reach, hit == &hits.ahead);
+        mark(hit->mesh, hit->triangle, hit->gap, hit->is_from_above);
       }
     }
   }

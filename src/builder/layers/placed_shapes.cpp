@@ -17,12 +17,12 @@ namespace {
 constexpr double kSameFacing = 0.5;
 
 /// Others than these many around a ray are left out: heaps of instances in one place take no longer for it.
-constexpr int kMostNeighbours = 32;
+constexpr int kMostNeighbours = 64;
 
 /// Near one ray. FlightHelmet, city and crystal are the same with and without this limit, to the byte. Where 20,000
 /// triangles join random points of a lattice thousands are near to each ray, and looking at all of them took two
 /// minutes.
-constexpr int kMostTested = 256;
+constexpr int kMostTested = 512;
 
 /// Larger and smaller ones are passed over: squares of differences are sound doubles.
 constexpr double kLargest = 0x1p500, kSmallest = 0x1p-500;
@@ -60,9 +60,9 @@ void add_primitives(const scene::SourceMesh& mesh, std::span<const scene::SceneM
       is_one ? std::span<const Vec3d>(mesh.primitives[0].positions) : std::span<const Vec3d>(shape.joined);
 }
 
-/// Where the ray meets the triangle, in units of the ray; 1 and more: nowhere. (Moeller and Trumbore 1997.) All lengths
-/// are multiplied by `per_unit` first. `facing`: in the triangle's frame, so that its product with the triangle's
-/// normal is that in the ray's own; `back` takes that normal there.
+/// Where the ray meets the triangle, in units of the ray, either way; 1: nowhere. (Moeller and Trumbore 1997.) All
+/// lengths are multiplied by `per_unit` first. `facing`: in the triangle's frame, so that its product with the
+/// triangle's normal is that in the ray's own; `back` takes that normal there.
 double meet(const TriangleCorners& corners, const LayerRay& ray, bool both_ways, double per_unit, const Mat3d* back) {
   const Vec3d a = (corners[0] - ray.from) * per_unit;
   const Vec3d e = (corners[1] - corners[0]) * per_unit, f = (corners[2] - corners[0]) * per_unit;
@@ -76,7 +76,7 @@ double meet(const TriangleCorners& corners, const LayerRay& ray, bool both_ways,
   const double v = glm::dot(along, q) / det;
   if (!(v >= 0.0 && u + v <= 1.0)) return 1.0;
   const double at = glm::dot(f, q) / det;
-  if (!(at > ray.least && at < 1.0)) return 1.0;
+  if (!(std::abs(at) > ray.least && std::abs(at) < 1.0)) return 1.0;
   const Vec3d normal = back != nullptr ? *back * glm::cross(e, f) : glm::cross(e, f);
   const double length = std::sqrt(glm::dot(normal, normal)), cosine = glm::dot(normal, ray.facing);
   const double same = both_ways ? std::abs(cosine) : cosine;
@@ -84,20 +84,21 @@ double meet(const TriangleCorners& corners, const LayerRay& ray, bool both_ways,
 }
 
 /// `ray` is in the shape's frame, but for its facing, which `back` takes normals of the shape to.
-void meet_shape(const Shape& shape, std::uint32_t mesh, const LayerRay& ray, const Mat3d* back, LayerHit& hit) {
+void meet_shape(const Shape& shape, std::uint32_t mesh, const LayerRay& ray, const Mat3d* back, LayerHits& hits) {
   int tested = 0;
-  shape.tree.visit_along(ray.from, ray.from + ray.along, [&](TreeSlot slot) {
-    hit.is_crowded = ++tested > kMostTested;
-    if (hit.is_crowded) return false;
+  shape.tree.visit_along(ray.from - ray.along, ray.from + ray.along, [&](TreeSlot slot) {
+    hits.is_crowded = ++tested > kMostTested;
+    if (hits.is_crowded) return false;
     const std::uint32_t triangle = shape.tree.triangle_at(slot);
     const bool both_ways = ray.faces_both_ways || shape.faces_both_ways(triangle);
     const TriangleCorners corners = canonical_corners(shape, triangle);
-    const double at = meet(corners, ray, both_ways, shape.per_unit, back);
+    const double along_ray = meet(corners, ray, both_ways, shape.per_unit, back), at = std::abs(along_ray);
+    LayerHit& hit = along_ray < 0.0 ? hits.behind : hits.ahead;
     if (!(at < hit.at) && !(at == hit.at && at < 1.0 && is_less(corners, hit.corners))) return true;
-    const Vec3d along = ray.along * shape.per_unit;
+    const Vec3d along = ray.along * (along_ray < 0.0 ? -shape.per_unit : shape.per_unit);
     const Vec3d e = (corners[1] - corners[0]) * shape.per_unit, f = (corners[2] - corners[0]) * shape.per_unit;
     const double gap = at * std::sqrt(glm::dot(along, along)) / shape.per_unit;
-    hit = {at, mesh, triangle, gap, glm::dot(along, glm::cross(e, f)) < 0.0, corners, false};
+    hit = {at, mesh, triangle, gap, glm::dot(along, glm::cross(e, f)) < 0.0, corners};
     return true;
   });
 }
@@ -184,17 +185,17 @@ void PlacedShapes::place(const scene::Scene& scene, std::span<const std::uint8_t
   world_.build({corners_, boxes_}, SurfaceTree::Leaves::kMade, SurfaceTree::Capsules::kLater);
 }
 
-void PlacedShapes::meet_itself(std::uint32_t mesh, const LayerRay& ray, LayerHit& hit) const {
-  meet_shape(shapes_[mesh], mesh, ray, nullptr, hit);
+void PlacedShapes::meet_itself(std::uint32_t mesh, const LayerRay& ray, LayerHits& hits) const {
+  meet_shape(shapes_[mesh], mesh, ray, nullptr, hits);
 }
 
-void PlacedShapes::meet_others(std::uint32_t mesh, std::size_t place, const LayerRay& ray, LayerHit& hit) const {
+void PlacedShapes::meet_others(std::uint32_t mesh, std::size_t place, const LayerRay& ray, LayerHits& hits) const {
   const std::uint32_t own = places_of_[mesh][place];
   const Place& here = places_[own];
   const Vec3d from = here.linear * ray.from + here.offset, along = here.linear * ray.along;
-  const Vec3d low = glm::min(from, from + along), high = glm::max(from, from + along);
+  const Vec3d low = glm::min(from - along, from + along), high = glm::max(from - along, from + along);
   int neighbours = 0;
-  world_.visit_along(from, from + along, [&](TreeSlot slot) {
+  world_.visit_along(from - along, from + along, [&](TreeSlot slot) {
     const std::uint32_t other = world_.triangle_at(slot);
     const Place& there = places_[other];
     const auto is_apart = [&](int k) { return high[k] < there.low[k] || low[k] > there.high[k]; };
@@ -207,8 +208,8 @@ void PlacedShapes::meet_others(std::uint32_t mesh, std::size_t place, const Laye
     // A normal comes back by the transposed way there: the cofactors of the way back, but for a factor that is positive
     // where both are mirrored or neither is, and where one is, so is its facing.
     const Mat3d back = glm::transpose(there.inverse * here.linear);
-    meet_shape(shapes_[there.mesh], there.mesh, moved, &back, hit);
-    return !hit.is_crowded;
+    meet_shape(shapes_[there.mesh], there.mesh, moved, &back, hits);
+    return !hits.is_crowded;
   });
 }
 

@@ -39,7 +39,7 @@ struct Shape {
 /// A triangle's corners, the least of them first: the same whatever numbers they have.
 [[nodiscard]] TriangleCorners canonical_corners(const Shape& shape, std::uint32_t triangle);
 
-/// A ray as a segment: what it meets lies between 0 and 1 along it.
+/// A ray to both sides of a triangle, as a segment: what it meets lies between -1 and 1 along it.
 struct LayerRay {
   Vec3d from{0.0}, along{0.0};
   Vec3d facing{0.0};  ///< the normal of the triangle that it starts from, of unit length
@@ -48,12 +48,16 @@ struct LayerRay {
 };
 
 struct LayerHit {
-  double at = 1.0;  ///< along the ray
+  double at = 1.0;  ///< along the ray, whichever way
   std::uint32_t mesh = kNoId, triangle = kNoId;
   double gap = 0.0;            ///< in the frame of that mesh
   bool is_from_above = false;  ///< the ray comes from the side that its normal points to
   TriangleCorners corners{};   ///< canonical, in that frame: of two in one place the lesser is met
-  bool is_crowded = false;     ///< too many triangles are near to the ray: no layers, and what was met is not all
+};
+
+struct LayerHits {
+  LayerHit ahead, behind;   ///< along the ray, and against it
+  bool is_crowded = false;  ///< too many triangles are near to the ray: no layers, and what was met is not all
 };
 
 class PlacedShapes {
@@ -65,10 +69,10 @@ class PlacedShapes {
   /// How many instances of the mesh others may stand around.
   [[nodiscard]] std::size_t place_count(std::size_t mesh) const { return places_of_[mesh].size(); }
 
-  /// The next triangle of the mesh itself that faces as the ray says, if it is nearer than `hit`.
-  void meet_itself(std::uint32_t mesh, const LayerRay& ray, LayerHit& hit) const;
+  /// The next triangles of the mesh itself that face as the ray says, where they are nearer than `hits`.
+  void meet_itself(std::uint32_t mesh, const LayerRay& ray, LayerHits& hits) const;
   /// The same of all others around one instance of the mesh. The ray is in the mesh's frame.
-  void meet_others(std::uint32_t mesh, std::size_t place, const LayerRay& ray, LayerHit& hit) const;
+  void meet_others(std::uint32_t mesh, std::size_t place, const LayerRay& ray, LayerHits& hits) const;
 
  private:
   struct Place {
