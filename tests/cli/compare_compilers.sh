@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 # compare_compilers.sh BUILD_A BUILD_B: builds the scenes of data/ (and a few models, where MESHLODE_MODELS names some)
-# with both programs. Their content hashes, and the files' bytes, must be equal (I10).
+# with both programs. Their content hashes, and the files' bytes, must be equal (I10), and so must the pictures of one
+# program be as golden pictures to the other.
 set -euo pipefail
 a=$1/meshlode b=$2/meshlode
 work=$(mktemp -d); trap 'rm -rf "$work"' EXIT
@@ -21,6 +22,10 @@ for scene in "${scenes[@]}"; do
   verdict=equal
   if [ -z "$hash_a" ] || [ "$hash_a" != "$hash_b" ]; then
     verdict=DIFFERENT different=$((different + 1))
+  fi
+  "$a" compare --golden "$work/$name" --update "$work/a.lode" --size 320x180 --quiet
+  if ! "$b" compare --golden "$work/$name" "$work/a.lode" --size 320x180 --quiet; then
+    verdict="PICTURES DIFFER" different=$((different + 1))
   fi
   compared=$((compared + 1))
   echo "$name  $hash_a  $hash_b  $verdict"

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
+#include <map>
 #include <mutex>
 #include <numeric>
 #include <optional>
@@ -178,6 +179,36 @@ BulkInput input_of(const app::JobResult& r, ManifestSide side) {
 
 }  // namespace
 
+std::string shared_folder(const std::vector<app::JobResult>& results) {
+  std::optional<std::filesystem::path> shared;
+  for (const app::JobResult& r : results) {
+    const std::filesystem::path folder = r.job.output.parent_path();
+    if (!shared) shared = folder;
+    const auto [end, other] = std::mismatch(shared->begin(), shared->end(), folder.begin(), folder.end());
+    std::filesystem::path common;
+    for (auto part = shared->begin(); part != end; ++part) common /= *part;
+    shared = std::move(common);
+  }
+  return shared ? shared->string() : "";
+}
+
+Status name_places(std::vector<BulkInput>& files) {
+  namespace fs = std::filesystem;
+  std::map<std::string, std::string> taken;
+  for (BulkInput& input : files) {
+    const fs::path path = input.path.empty() ? input.source : input.path;
+    fs::path place = input.base.empty() ? path : path.lexically_relative(input.base);
+    const bool is_below = place.is_relative() && std::find(place.begin(), place.end(), "..") == place.end();
+    if (!is_below || (input.base.empty() && !input.is_found)) place = path.filename();
+    if (place.extension() == ".lode") place.replace_extension();
+    input.place = place.lexically_normal().string();
+    const auto [first, is_new] = taken.emplace(input.place, path.string());
+    if (is_new) continue;
+    return Error{ErrorCode::kUsage, path.string(), "has the same outputs as " + first->second};
+  }
+  return Ok{};
+}
+
 void write_document(JsonWriter& json, std::string_view document, std::size_t depth) {
   std::string inner;
   document.remove_suffix(1);  // the line break at its end; no string in it has one
@@ -245,7 +276,11 @@ Result<BulkInputs> find_bulk_inputs(const Verb& verb, const BulkWords& words, ap
     TRY(check_is_manifest(words.manifest));
     TRY_LET(manifest, app::read_manifest(words.manifest));
     if (const auto id = find_file_id(words.manifest)) output_files().keep(*id);
-    for (const app::JobResult& r : manifest->results) inputs.files.push_back(input_of(r, side));
+    const std::string base = shared_folder(manifest->results);
+    for (const app::JobResult& r : manifest->results) {
+      inputs.files.push_back(input_of(r, side));
+      if (side == ManifestSide::kAssets) inputs.files.back().base = base;
+    }
   }
   if (inputs.files.empty()) {
     return Error{ErrorCode::kIo, words.manifest.empty() ? words.files.front() : words.manifest,

@@ -13,6 +13,7 @@
 #include <meshlode/result.h>
 
 #include "app/batch/jobs/find_inputs.h"
+#include "app/batch/jobs/job_result.h"
 #include "base/json_writer.h"
 #include "options.h"
 
@@ -40,6 +41,7 @@ struct BulkInput {
   std::string source = {};  ///< of the manifest; empty: not known
   std::string base = {};    ///< the folder below which it was found; empty: none, or the current one
   bool is_found = false;    ///< below a folder or by a pattern
+  std::string place = {};   ///< of name_places()
   /// A file of a manifest that no asset was made of, and why.
   int exit_code = 0;
   std::string error = {};
@@ -83,6 +85,14 @@ void add_bulk_resources(OptionParser& parser, BulkWords& words);
 /// The files that are meant, each kept from being written over. Errors: kUsage, kIo, kInvalid.
 [[nodiscard]] Result<BulkInputs> find_bulk_inputs(const Verb& verb, const BulkWords& words, app::InputKind kind,
                                                   ManifestSide side);
+
+/// The folder that all outputs of a batch lie below, as their paths are written; empty: none.
+[[nodiscard]] std::string shared_folder(const std::vector<app::JobResult>& results);
+
+/// What the outputs of each file are called below another folder, without an extension: its place below the folder that
+/// it was found in, or for those of a manifest below the one that all of them share; of a file given by itself its
+/// name. Error: kUsage where two files have one place.
+[[nodiscard]] Status name_places(std::vector<BulkInput>& files);
 
 /// Works on all and prints a row a file, with errors on stderr, or with --format json one document. A file that fails
 /// does not stop the others. `report`: where the rows or the document go, "-" for stdout. \returns the worst exit code

@@ -117,9 +117,16 @@ bool parse_size(std::string_view text, std::uint32_t& width, std::uint32_t& heig
 }
 
 void add_camera_options(OptionParser& parser, CameraOptions& options) {
-  parser.add_value("--camera EX,EY,EZ,TX,TY,TZ[,FOVY[,NEAR]]", options.camera,
-                   "eye, target, vertical field of view in degrees, near distance; world units (default: a view that "
-                   "frames the scene)");
+  add_camera_options(parser, options, [&](const char* name, const std::string& help) {
+    parser.add_value(name, options.camera, help.c_str());
+  });
+}
+
+void add_camera_options(OptionParser& parser, CameraOptions& options,
+                        const std::function<void(const char* name, const std::string& help)>& add_camera) {
+  add_camera("--camera EX,EY,EZ,TX,TY,TZ[,FOVY[,NEAR]]",
+             "eye, target, vertical field of view in degrees, near distance; world units (default: a view that "
+             "frames the scene)");
   parser.add_value("--ortho HEIGHT", options.ortho_height,
                    "orthographic camera; HEIGHT of the picture in world units (default: perspective)");
   parser.add_value("--size WxH", options.size, "size of the picture in pixels, each 1 to 16384");

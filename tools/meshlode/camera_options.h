@@ -4,6 +4,7 @@
 // `--size WxH`, `--pixel-error t`.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -23,6 +24,9 @@ struct CameraOptions {
   double pixel_error = 1.0;
 };
 void add_camera_options(OptionParser& parser, CameraOptions& options);
+/// The same, with `--camera` added by the caller.
+void add_camera_options(OptionParser& parser, CameraOptions& options,
+                        const std::function<void(const char* name, const std::string& help)>& add_camera);
 
 /// "1280x720", each 1 to 16384; false for anything else.
 [[nodiscard]] bool parse_size(std::string_view text, std::uint32_t& width, std::uint32_t& height);

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
-#include <set>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -13,14 +13,19 @@
 #include "app/compare/compare.h"
 #include "app/compare/stored_bytes.h"
 #include "base/append_format.h"
+#include "base/file.h"
+#include "base/hash.h"
 #include "base/printable.h"
 #include "base/try.h"
 #include "budget_options.h"
 #include "bulk.h"
-#include "camera_options.h"
-#include "draw_pair.h"
+#include "compare_folder.h"
+#include "compare_pairs.h"
+#include "draw_views.h"
 #include "file_kind.h"
+#include "golden.h"
 #include "options.h"
+#include "outputs.h"
 #include "run/read/asset.h"
 #include "verb.h"
 
@@ -29,17 +34,21 @@ namespace meshlode::cli {
 namespace {
 
 struct CompareOptions {
-  std::string before, after;
+  std::vector<std::string> files;
   std::optional<std::string> fail_if;
   bool is_rendered = false;
-  CameraOptions camera;
+  GoldenOptions golden;
+  std::string folder;  ///< of pictures and page
+  ViewOptions views;
   std::string max_decoded = kDefaultMaxDecodedText;
   OutputOptions output;
 };
 
-bool is_camera_given(const CameraOptions& camera) {
+bool is_camera_given(const ViewOptions& views) {
   const CameraOptions usual;
-  return camera.camera || camera.ortho_height || camera.size != usual.size || camera.pixel_error != usual.pixel_error;
+  const CameraOptions& camera = views.common;
+  return !views.cameras.empty() || camera.ortho_height || camera.size != usual.size ||
+         camera.pixel_error != usual.pixel_error;
 }
 
 /// The errors of drawing are those of an asset's pages; which of the two is said by neither.
@@ -48,10 +57,15 @@ Error in_picture(Error error) {
   return error;
 }
 
-/// Errors: those of opening; kInvalid for damaged pages and images, which opening does not look at.
-Result<run::Asset> open_sound(const std::string& path, std::uint64_t max_decoded) {
+/// Errors: those of opening; kInvalid for damaged pages and images, which opening does not look at; kCheckFailed for
+/// another file than a manifest lists.
+Result<run::Asset> open_sound(const std::string& path, std::uint64_t max_decoded,
+                              const std::map<std::string, Hash128>& hashes) {
   Result<run::Asset> asset = open_asset(path, max_decoded);
   if (!asset) return asset;
+  if (const auto hash = hashes.find(path); hash != hashes.end() && hash128(asset->bytes()) != hash->second) {
+    return Error{ErrorCode::kCheckFailed, path, "is not the asset that the manifest lists"};
+  }
   if (const Status sound = app::check_stored_bytes(*asset); !sound) {
     Error error = sound.error();
     error.where = path + ": " + error.where;
@@ -63,7 +77,7 @@ Result<run::Asset> open_sound(const std::string& path, std::uint64_t max_decoded
 struct CompareCommand {
   CompareOptions options;
   std::vector<app::Condition> budget;
-  std::uint64_t max_decoded = 0;
+  ComparePairs pairs;
 };
 
 /// The row of several pairs.
@@ -75,27 +89,51 @@ std::vector<std::string> row_of(std::size_t before, std::size_t after) {
   return {grouped_digits(before), grouped_digits(after), std::move(change)};
 }
 
+/// Both under the same cameras: the options' or, where they name none, the one that frames the old asset.
+Status draw_both(const run::Asset& before, const run::Asset& after, const BulkInput& input,
+                 const CompareOptions& options, CompareFolder& folder, std::vector<std::string>& warnings,
+                 std::vector<app::PictureChange>& pictures) {
+  TRY_LET(cameras, make_cameras(options.views, before));
+  TRY_LET(old_views, draw_views(before, *cameras, options.views, warnings));
+  TRY_LET(new_views, draw_views(after, *cameras, options.views, warnings));
+  for (std::size_t i = 0; i < cameras->size(); ++i) {
+    const DrawnView& a = (*old_views)[i];
+    const DrawnView& b = (*new_views)[i];
+    ComparedPicture picture = compare_images(a.image, b.image);
+    picture.change.camera = static_cast<std::uint32_t>(i + 1);
+    picture.change.pixel_error = options.views.common.pixel_error;
+    picture.change.changes = {{"clusters", static_cast<double>(a.clusters), static_cast<double>(b.clusters)},
+                              {"triangles", static_cast<double>(a.triangles), static_cast<double>(b.triangles)}};
+    TRY(folder.write(input.place, a.image, b.image, picture));
+    pictures.push_back(std::move(picture.change));
+  }
+  return Ok{};
+}
+
 /// `input.source`: the older asset.
-FileOutcome compare_pair(const BulkInput& input, const CompareCommand& command) {
+FileOutcome compare_pair(const BulkInput& input, const CompareCommand& command, CompareFolder& folder) {
   const CompareOptions& options = command.options;
   FileOutcome out;
+  app::ComparedFile page;
   const auto fail = [&](Error error) {
     out.fail(std::move(error));
-    return out;
+    folder.add(input, out, std::move(page));
+    return std::move(out);
   };
-  const Result<run::Asset> before = open_sound(input.source, command.max_decoded);
+  const Result<run::Asset> before = open_sound(input.source, options.views.max_decoded, command.pairs.old_hashes);
   if (!before) return fail(before.error());
-  const Result<run::Asset> after = open_sound(input.path, command.max_decoded);
+  const Result<run::Asset> after = open_sound(input.path, options.views.max_decoded, command.pairs.new_hashes);
   if (!after) return fail(after.error());
   app::AssetComparison comparison = app::compare_assets(*before, *after);
   comparison.before.file = input.source;
   comparison.after.file = input.path;
+  page.before = before->bytes().size();
+  page.after = after->bytes().size();
   if (options.is_rendered) {
     std::vector<std::string> warnings;
-    auto picture = draw_pair({*before, *after, command.max_decoded}, options.camera, warnings);
+    const Status drawn = draw_both(*before, *after, input, options, folder, warnings, comparison.pictures);
     for (const std::string& warning : warnings) out.notes += "warning: " + warning + "\n";
-    if (!picture) return fail(in_picture(picture.error()));
-    comparison.picture = std::move(*picture);
+    if (!drawn) return fail(in_picture(drawn.error()));
   }
   std::vector<app::BrokenCondition> broken;
   if (!command.budget.empty()) {
@@ -103,10 +141,13 @@ FileOutcome compare_pair(const BulkInput& input, const CompareCommand& command) 
     if (!judged) return fail(judged.error());
     broken = std::move(*judged);
   }
+  page.text = app::comparison_text(comparison);
+  page.pictures = comparison.pictures;
+  page.verdict = std::ranges::equal(before->bytes(), after->bytes()) ? "equal" : "changed";
   if (options.output.json()) {
     out.text = app::comparison_json(comparison, broken);
   } else if (!options.output.quiet || command.budget.empty()) {  // with a budget it is the verdict that is asked for
-    out.text = app::comparison_text(comparison);
+    out.text = page.text;
   }
   const bool is_of_errors = std::ranges::any_of(broken, [](const app::BrokenCondition& one) {
     return one.condition.find("error_min") != std::string::npos || one.condition.find("error_max") != std::string::npos;
@@ -115,44 +156,97 @@ FileOutcome compare_pair(const BulkInput& input, const CompareCommand& command) 
     out.notes += "warning: errors are " + tiers + "\n";
   }
   out.cells = row_of(before->bytes().size(), after->bytes().size());
+  if (const auto flip = app::worst_flip(comparison.pictures)) {
+    append_format(out.cells.emplace_back(), "%.4f", flip->mean);
+  }
   for (const app::BrokenCondition& one : broken) {
     out.late_errors.push_back({ErrorCode::kCheckFailed, input.path, one.message()});
   }
   if (!broken.empty()) out.exit_code = static_cast<int>(ErrorCode::kCheckFailed);
+  folder.add(input, out, std::move(page));
   return out;
-}
-
-/// Assets below two folders, by their places below them: those of the newer one first, then what it has no more.
-Result<std::vector<BulkInput>> pair_folders(const std::string& before, const std::string& after) {
-  namespace fs = std::filesystem;
-  TRY_LET(old_files, app::find_inputs(before, app::InputKind::kAssets));
-  TRY_LET(new_files, app::find_inputs(after, app::InputKind::kAssets));
-  std::set<fs::path> left;
-  for (const fs::path& file : old_files->files) left.insert(file.lexically_relative(before));
-  std::vector<BulkInput> pairs;
-  for (const fs::path& file : new_files->files) {
-    const fs::path inner = file.lexically_relative(after);
-    pairs.push_back({file.string(), left.erase(inner) > 0 ? (before / inner).string() : ""});
-  }
-  for (const fs::path& inner : left) pairs.push_back({"", (before / inner).string()});
-  if (!pairs.empty()) return pairs;
-  return Error{ErrorCode::kIo, after, "no asset in it, and none in " + before};
 }
 
 /// A pair, or an asset that has no other: new ones are told of, lost ones fail where there are limits.
-FileOutcome compare_or_tell(const BulkInput& input, const CompareCommand& command) {
-  if (!input.path.empty() && !input.source.empty()) return compare_pair(input, command);
+FileOutcome compare_or_tell(const BulkInput& input, const CompareCommand& command, CompareFolder& folder) {
+  if (!input.path.empty() && !input.source.empty()) return compare_pair(input, command, folder);
   FileOutcome out;
+  app::ComparedFile page;
   const std::string& path = input.path.empty() ? input.source : input.path;
   std::error_code error;
-  const std::string bytes = grouped_digits(std::filesystem::file_size(path, error));
+  const std::uint64_t size = std::filesystem::file_size(path, error);
+  const std::string bytes = error ? "-" : grouped_digits(size);
   if (!input.path.empty()) {
     out.cells = {"-", bytes, "new"};
+    if (!error) page.after = size;
+    page.verdict = "new";
   } else {
     out.cells = {bytes, "-", "gone"};
+    if (!error) page.before = size;
+    page.verdict = "gone";
     if (!command.budget.empty()) out.fail({ErrorCode::kCheckFailed, path, "has no newer asset"});
   }
+  folder.add(input, out, std::move(page));
   return out;
+}
+
+/// Files of a manifest that no asset was made of are told of by run_bulk() alone.
+void add_failures(const std::vector<BulkInput>& files, CompareFolder& folder) {
+  for (const BulkInput& input : files) {
+    if (input.error.empty()) continue;
+    FileOutcome out;
+    out.fail({static_cast<ErrorCode>(input.exit_code), "", input.error});
+    folder.add(input, out, {});
+  }
+}
+
+int run_golden(const Verb& verb, const CompareOptions& options, BulkWords& bulk) {
+  GoldenCommand command{options.golden, {}, options.views, options.output};
+  auto budget = read_budget_option(options.fail_if.value_or(kGoldenBudget), app::golden_schema());
+  if (!budget) return print_error(budget.error());
+  command.budget = std::move(*budget);
+  bulk.files = options.files;
+  auto inputs = find_bulk_inputs(verb, bulk, app::InputKind::kAssets, ManifestSide::kAssets);
+  if (!inputs) return print_error(inputs.error());
+  if (const Status named = name_places(inputs->files); !named) return print_error(named.error());
+  CompareFolder folder(options.folder);
+  add_failures(inputs->files, folder);
+  int exit_code = 0;
+  if (inputs->is_single) {
+    const JobLimit limit(bulk.jobs);
+    exit_code = compare_with_golden(inputs->files.front(), command, folder).print();
+  } else {
+    const bool is_whole =
+        std::ranges::all_of(inputs->files, [](const BulkInput& input) { return !input.base.empty(); });
+    if (is_whole) {
+      if (const Status added = add_orphans(command, inputs->files); !added) return print_error(added.error());
+    }
+    exit_code = run_bulk({"compare",
+                          {{"FLIP", 6}, {"picture", 7}},
+                          [&](const BulkInput& input) { return compare_with_golden(input, command, folder); }},
+                         inputs->files, bulk, options.output);
+  }
+  return std::max(exit_code, folder.finish(options.golden.folder));
+}
+
+Status check_options(const CompareOptions& options) {
+  const auto usage = [](const char* option, const char* detail) { return Error{ErrorCode::kUsage, option, detail}; };
+  const bool is_golden = !options.golden.folder.empty();
+  if (options.golden.is_updated && !is_golden) return usage("--update", "needs --golden");
+  if (options.golden.is_updated && (options.fail_if || !options.folder.empty())) {
+    return usage("--update", "compares nothing: give neither --fail-if nor -O");
+  }
+  if (is_golden) return Ok{};
+  if (!options.is_rendered && is_camera_given(options.views)) {
+    return usage("", "--camera, --ortho, --size and --pixel-error need --render");
+  }
+  if (options.files.size() == 2) return Ok{};
+  return usage("", options.files.size() < 2 ? "OLD and NEW are required; see meshlode compare --help"
+                                            : "takes two (OLD and NEW), but with --golden any number");
+}
+
+bool is_manifest_name(const std::string& path) {
+  return std::filesystem::path(path).extension() == ".json";
 }
 
 int run_compare(const Verb& verb, std::span<char* const> args) {
@@ -160,45 +254,77 @@ int run_compare(const Verb& verb, std::span<char* const> args) {
   CompareOptions& options = command.options;
   BulkWords bulk;
   OptionParser parser(verb);
-  parser.add_positional("OLD", options.before, "a .lode asset, or a folder of them");
-  parser.add_positional("NEW", options.after, "the asset or the folder to compare with it");
+  parser.add_positionals("FILE", options.files,
+                         "OLD and NEW: two .lode assets, folders of them, or manifests (NAME.json); with --golden "
+                         "assets, folders or patterns",
+                         false);
   parser.group("Output");
+  parser.add_value("-O FOLDER", options.folder,
+                   "write PNG files of what differs (old, new, FLIP) and a page, index.html (default: none)");
   add_output_options(parser, options.output);
   add_budget_option(parser, options.fail_if, "--format json", "file_bytes.ratio>1.02, any(meshes).levels.change!=0");
   add_bulk_outputs(parser, bulk);
   parser.group("Pictures");
-  parser.add_flag("--render", options.is_rendered, "draw both with one camera and compare the pictures");
-  add_camera_options(parser, options.camera);
+  parser.add_flag("--render", options.is_rendered, "draw both with the same cameras and compare the pictures");
+  add_view_options(parser, options.views);
+  parser.add_value("--golden FOLDER", options.golden.folder,
+                   "compare with the pictures in this folder; without --fail-if each pixel must be equal (default: "
+                   "none)");
+  parser.add_flag("--update", options.golden.is_updated, "write the pictures of --golden instead");
+  parser.add_value("--manifest FILE", bulk.manifest, "with --golden: the assets of this manifest (default: none)");
   parser.group("Resources");
   add_bulk_resources(parser, bulk);
   add_max_decoded_option(parser, options.max_decoded);
   if (const auto exit_code = parser.parse(args)) return *exit_code;
+  const Result<std::uint64_t> max_decoded = parse_max_decoded(options.max_decoded);
+  if (!max_decoded) return print_error(max_decoded.error());
+  options.views.max_decoded = *max_decoded;
+  if (const Status checked = check_options(options); !checked) return print_error(checked.error());
+  if (!options.golden.folder.empty()) return run_golden(verb, options, bulk);
+  if (!bulk.manifest.empty()) {
+    return print_error({ErrorCode::kUsage, "--manifest", "needs --golden; name two manifests as OLD and NEW"});
+  }
   auto budget = read_budget_option(options.fail_if, app::compare_schema());
   if (!budget) return print_error(budget.error());
   command.budget = std::move(*budget);
-  if (app::mentions(command.budget, "picture") && !options.is_rendered) {
-    return print_error({ErrorCode::kUsage, "--fail-if", "picture needs --render"});
+  for (const char* key : {"picture", "pictures", "flip"}) {
+    if (app::mentions(command.budget, key) && !options.is_rendered) {
+      return print_error({ErrorCode::kUsage, "--fail-if", std::string(key) + " needs --render"});
+    }
   }
-  if (!options.is_rendered && is_camera_given(options.camera)) {
-    return print_error({ErrorCode::kUsage, "", "--camera, --ortho, --size and --pixel-error need --render"});
-  }
-  const Result<std::uint64_t> max_decoded = parse_max_decoded(options.max_decoded);
-  if (!max_decoded) return print_error(max_decoded.error());
-  command.max_decoded = *max_decoded;
+  const std::string &before = options.files[0], &after = options.files[1];
   std::error_code error;
-  const bool is_before_folder = std::filesystem::is_directory(options.before, error);
-  const bool is_after_folder = std::filesystem::is_directory(options.after, error);
-  if (!is_before_folder || !is_after_folder) {
-    if (!bulk.junit.empty()) return print_error({ErrorCode::kUsage, "--junit", "is for two folders"});
+  const bool are_folders = std::filesystem::is_directory(before, error) && std::filesystem::is_directory(after, error);
+  const bool are_manifests = is_manifest_name(before) && is_manifest_name(after);
+  CompareFolder folder(options.folder);
+  if (!are_folders && !are_manifests) {
+    if (!bulk.junit.empty()) return print_error({ErrorCode::kUsage, "--junit", "is for two folders or manifests"});
+    std::vector<BulkInput> pair{{after, before}};
+    if (const Status named = name_places(pair); !named) return print_error(named.error());
+    for (const std::string& path : {before, after}) {
+      if (const auto id = find_file_id(path)) output_files().keep(*id);
+    }
     const JobLimit limit(bulk.jobs);
-    return compare_pair({options.after, options.before}, command).print();
+    const int exit_code = compare_pair(pair.front(), command, folder).print();
+    return std::max(exit_code, folder.finish(pair.front().place));
   }
-  auto pairs = pair_folders(options.before, options.after);
+  auto pairs = are_folders ? pair_folders(before, after) : pair_manifests(before, after);
   if (!pairs) return print_error(pairs.error());
-  return run_bulk({"compare",
-                   {{"old bytes", 13}, {"new bytes", 13}, {"change", 8}},
-                   [&](const BulkInput& input) { return compare_or_tell(input, command); }},
-                  *pairs, bulk, options.output);
+  command.pairs = std::move(*pairs);
+  std::vector<BulkInput>& files = command.pairs.files;
+  if (const Status named = name_places(files); !named) return print_error(named.error());
+  for (const BulkInput& input : files) {
+    for (const std::string& path : {input.path, input.source}) {
+      if (const auto id = path.empty() ? std::nullopt : find_file_id(path)) output_files().keep(*id);
+    }
+  }
+  add_failures(files, folder);
+  std::vector<BulkColumn> columns{{"old bytes", 13}, {"new bytes", 13}, {"change", 8}};
+  if (options.is_rendered) columns.push_back({"FLIP", 6});
+  const int exit_code =
+      run_bulk({"compare", columns, [&](const BulkInput& input) { return compare_or_tell(input, command, folder); }},
+               files, bulk, options.output);
+  return std::max(exit_code, folder.finish(before + " and " + after));
 }
 
 }  // namespace
@@ -206,15 +332,19 @@ int run_compare(const Verb& verb, std::span<char* const> args) {
 const Verb kCompareVerb{
     "compare", "show what changed between two assets and check it against limits",
     "Compares sizes, settings, meshes, levels, materials and images of two assets, usually two builds of one scene. "
-    "With --render both are drawn with one camera and the pictures are compared.\n\n"
+    "With --render both are drawn with the same cameras and the pictures are compared, by PSNR and by FLIP. -O writes "
+    "the pictures that differ, and a page.\n\n"
     "With --fail-if the changes become limits that a pipeline can check.\n\n"
-    "Two folders are compared asset by asset, by their places below them, with a row each. An asset that only the "
-    "older "
-    "one has fails where there are limits.",
+    "Two folders are compared asset by asset, by their places below them, two manifests by their scenes, with a row "
+    "each. An asset that only the older one has fails where there are limits.\n\n"
+    "With --golden assets are compared with pictures that --update wrote before; a picture that no asset of a folder "
+    "has fails.",
     "meshlode compare old.lode new.lode\n"
-    "  meshlode compare golden/ out/ --render --fail-if 'picture.psnr<40' --junit compare.xml\n"
     "  meshlode compare old.lode new.lode --fail-if 'file_bytes.ratio>1.02'\n"
-    "  meshlode compare old.lode new.lode --render --fail-if 'picture.psnr<40'",
+    "  meshlode compare released/ out/ --render -O changes --fail-if 'flip.mean>0.02' --junit compare.xml\n"
+    "  meshlode compare last.json now.json\n"
+    "  meshlode compare --golden golden/ out/ --update\n"
+    "  meshlode compare --golden golden/ out/ --fail-if 'flip.mean>0.02' -O changes",
     run_compare};
 
 }  // namespace meshlode::cli

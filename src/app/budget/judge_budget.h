@@ -14,9 +14,10 @@
 
 namespace meshlode::app {
 
-/// docs/schemas/info.schema.json and compare.schema.json, as they were when the program was built.
+/// docs/schemas/info.schema.json, compare.schema.json and golden.schema.json, as they were when the program was built.
 [[nodiscard]] std::string_view info_schema();
 [[nodiscard]] std::string_view compare_schema();
+[[nodiscard]] std::string_view golden_schema();
 
 /// parse_conditions(), and each path leads to a value of the schema. Errors: kUsage; for a key that there is not, with
 /// the nearest that there is.

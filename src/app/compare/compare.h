@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What `meshlode compare OLD NEW` says: two assets side by side, as data, as JSON and as text. The JSON's keys are a
-// promise (docs/schemas/compare.schema.json, docs/guides/budgets.md).
+// promise (docs/schemas/compare.schema.json, docs/reference/compare.md).
 #pragma once
 
 #include <cstdint>
@@ -83,11 +83,24 @@ struct ListChange {
   std::vector<OneSided> removed, added;
 };
 
+/// What FLIP's paper pools a picture of differences into (lab/flip/flip.h), each 0 to 1.
+struct FlipFigures {
+  double mean = 0.0, weighted_median = 0.0, max = 0.0;
+};
+
+/// PNG files below the folder of `compare -O`.
+struct PictureFiles {
+  std::string before, after, flip;
+};
+
 struct PictureChange {
+  std::uint32_t camera = 1;  ///< in the order in which they were given
   std::uint32_t width = 0, height = 0;
   double pixel_error = 0.0;
   std::vector<Change> changes;  ///< triangles and clusters of the cuts
   PictureDifference difference;
+  FlipFigures flip;
+  std::optional<PictureFiles> files;
 };
 
 struct AssetComparison {
@@ -99,7 +112,7 @@ struct AssetComparison {
   std::vector<OneSided> meshes_removed, meshes_added;
   ListChange materials, images;
   std::vector<SectionChange> sections;
-  std::optional<PictureChange> picture;  ///< left to the caller: it takes drawing both
+  std::vector<PictureChange> pictures;  ///< left to the caller: it takes drawing both
 };
 
 /// Nothing of an asset's pages is looked at but their sizes.
@@ -109,6 +122,20 @@ struct AssetComparison {
 [[nodiscard]] std::string comparison_json(const AssetComparison& comparison,
                                           const std::vector<BrokenCondition>& broken = {});
 [[nodiscard]] std::string comparison_text(const AssetComparison& comparison);
+
+/// The largest of each; nothing where there is no picture.
+[[nodiscard]] std::optional<FlipFigures> worst_flip(const std::vector<PictureChange>& pictures);
+[[nodiscard]] std::string pictures_text(const std::vector<PictureChange>& pictures);
+
+/// `compare --golden`: one asset against the pictures that were stored of it.
+struct GoldenComparison {
+  std::string file;
+  bool is_updated = false;  ///< the pictures were written, nothing was compared
+  std::vector<PictureChange> pictures;
+};
+/// docs/schemas/golden.schema.json.
+[[nodiscard]] std::string golden_json(const GoldenComparison& comparison,
+                                      const std::vector<BrokenCondition>& broken = {});
 /// "not comparable in 2 of 3 meshes: …"; empty where all are.
 [[nodiscard]] std::string tiers_text(const AssetComparison& comparison);
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // `compare --format json`: the keys here are a promise; docs/schemas/compare.schema.json lists them.
+#include <algorithm>
 #include <cmath>
 
 #include "app/compare/compare.h"
@@ -117,24 +118,52 @@ void write_meshes(JsonWriter& w, const AssetComparison& comparison) {
   write_one_sided(w, "meshes_removed", comparison.meshes_removed);
 }
 
-void write_picture(JsonWriter& w, const std::optional<PictureChange>& picture) {
-  w.key("picture");
-  if (!picture) return w.null();
+void write_flip(JsonWriter& w, const std::optional<FlipFigures>& flip) {
+  w.key("flip");
+  if (!flip) return w.null();
   w.begin_object();
-  w.field("width", picture->width);
-  w.field("height", picture->height);
-  w.field("pixel_error", picture->pixel_error);
-  write_changes(w, picture->changes);
+  w.field("mean", flip->mean);
+  w.field("weighted_median", flip->weighted_median);
+  w.field("max", flip->max);
+  w.end_object();
+}
+
+void write_picture(JsonWriter& w, const PictureChange& picture) {
+  w.begin_object();
+  w.field("camera", picture.camera);
+  w.field("width", picture.width);
+  w.field("height", picture.height);
+  w.field("pixel_error", picture.pixel_error);
+  write_changes(w, picture.changes);
   w.key("psnr");
-  if (picture->difference.psnr) {
-    w.value(*picture->difference.psnr);
+  if (picture.difference.psnr) {
+    w.value(*picture.difference.psnr);
   } else {
     w.null();
   }
-  w.field("differing_pixels", picture->difference.differing_pixels);
-  w.field("differing_share", picture->difference.differing_share());
-  w.field("max_difference", picture->difference.max_difference);
+  w.field("differing_pixels", picture.difference.differing_pixels);
+  w.field("differing_share", picture.difference.differing_share());
+  w.field("max_difference", picture.difference.max_difference);
+  write_flip(w, picture.flip);
+  w.key("files");
+  if (picture.files) {
+    w.begin_object();
+    w.field("old", picture.files->before);
+    w.field("new", picture.files->after);
+    w.field("flip", picture.files->flip);
+    w.end_object();
+  } else {
+    w.null();
+  }
   w.end_object();
+}
+
+void write_pictures(JsonWriter& w, const std::vector<PictureChange>& pictures) {
+  w.key("pictures");
+  w.begin_array();
+  for (const PictureChange& picture : pictures) write_picture(w, picture);
+  w.end_array();
+  write_flip(w, worst_flip(pictures));
 }
 
 void write_broken(JsonWriter& w, const std::vector<BrokenCondition>& broken) {
@@ -154,6 +183,28 @@ void write_broken(JsonWriter& w, const std::vector<BrokenCondition>& broken) {
 }
 
 }  // namespace
+
+std::optional<FlipFigures> worst_flip(const std::vector<PictureChange>& pictures) {
+  if (pictures.empty()) return std::nullopt;
+  FlipFigures worst;
+  for (const PictureChange& picture : pictures) {
+    worst.mean = std::max(worst.mean, picture.flip.mean);
+    worst.weighted_median = std::max(worst.weighted_median, picture.flip.weighted_median);
+    worst.max = std::max(worst.max, picture.flip.max);
+  }
+  return worst;
+}
+
+std::string golden_json(const GoldenComparison& comparison, const std::vector<BrokenCondition>& broken) {
+  JsonWriter w;
+  w.begin_object();
+  w.field("file", comparison.file);
+  w.field("updated", comparison.is_updated);
+  write_pictures(w, comparison.pictures);
+  write_broken(w, broken);
+  w.end_object();
+  return w.text();
+}
 
 std::string comparison_json(const AssetComparison& comparison, const std::vector<BrokenCondition>& broken) {
   JsonWriter w;
@@ -195,7 +246,13 @@ std::string comparison_json(const AssetComparison& comparison, const std::vector
     w.end_object();
   }
   w.end_array();
-  write_picture(w, comparison.picture);
+  w.key("picture");
+  if (comparison.pictures.empty()) {
+    w.null();
+  } else {
+    write_picture(w, comparison.pictures.front());
+  }
+  write_pictures(w, comparison.pictures);
   write_broken(w, broken);
   w.end_object();
   return w.text();

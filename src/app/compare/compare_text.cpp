@@ -114,8 +114,10 @@ void add_list(std::string& out, const char* heading, const ListChange& list) {
   add_rows(out, heading, rows);
 }
 
-void add_picture(std::string& out, const PictureChange& picture) {
-  append_format(out, "\npicture %ux%u at a pixel error of %g\n", picture.width, picture.height, picture.pixel_error);
+void add_picture(std::string& out, const PictureChange& picture, bool is_one_of_many) {
+  const std::string camera = is_one_of_many ? " of camera " + std::to_string(picture.camera) + "," : "";
+  append_format(out, "\npicture%s %ux%u at a pixel error of %g\n", camera.c_str(), picture.width, picture.height,
+                picture.pixel_error);
   out += rows_of("", picture.changes);
   const PictureDifference& difference = picture.difference;
   if (!difference.psnr) {
@@ -126,6 +128,8 @@ void add_picture(std::string& out, const PictureChange& picture) {
                 *difference.psnr, grouped_digits(difference.differing_pixels).c_str(),
                 grouped_digits(difference.pixels).c_str(), 100.0 * difference.differing_share(),
                 difference.max_difference);
+  append_format(out, "  FLIP mean %.4f, weighted median %.4f, max %.4f\n", picture.flip.mean,
+                picture.flip.weighted_median, picture.flip.max);
 }
 
 /// "content     equal" or both texts.
@@ -183,7 +187,12 @@ std::string comparison_text(const AssetComparison& comparison) {
   add_list(body, "\nmaterials", comparison.materials);
   add_list(body, "\nimages", comparison.images);
   out += body.empty() ? "\nno number differs, nor a name, a setting, a material or an image\n" : body;
-  if (comparison.picture) add_picture(out, *comparison.picture);
+  return out + pictures_text(comparison.pictures);
+}
+
+std::string pictures_text(const std::vector<PictureChange>& pictures) {
+  std::string out;
+  for (const PictureChange& picture : pictures) add_picture(out, picture, pictures.size() > 1);
   return out;
 }
 
