@@ -4,16 +4,12 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
-#include <filesystem>
-#include <map>
 #include <mutex>
 #include <numeric>
 #include <optional>
-#include <system_error>
 #include <utility>
 
 #include "app/batch/jobs/weigh.h"
-#include "app/batch/shard/read_manifest.h"
 #include "app/batch/tell/tell.h"
 #include "base/append_format.h"
 #include "base/file.h"
@@ -21,8 +17,6 @@
 #include "base/json_writer.h"
 #include "base/memory.h"
 #include "base/parallel.h"
-#include "base/try.h"
-#include "file_kind.h"
 #include "output_name.h"
 #include "outputs.h"
 #include "streams.h"
@@ -168,46 +162,7 @@ FileOutcome work_on(const BulkVerb& verb, const BulkInput& input) {
   return outcome;
 }
 
-BulkInput input_of(const app::JobResult& r, ManifestSide side) {
-  if (side == ManifestSide::kScenes) return {r.job.input.string()};
-  BulkInput input{r.job.output.string(), r.job.input.string()};
-  if (r.has_asset()) return input;
-  input.exit_code = r.exit_code != 0 ? r.exit_code : static_cast<int>(ErrorCode::kIo);
-  input.error = r.job.output.string() + ": no asset was made: " + (r.error.empty() ? "skipped" : r.error);
-  return input;
-}
-
 }  // namespace
-
-std::string shared_folder(const std::vector<app::JobResult>& results) {
-  std::optional<std::filesystem::path> shared;
-  for (const app::JobResult& r : results) {
-    const std::filesystem::path folder = r.job.output.parent_path();
-    if (!shared) shared = folder;
-    const auto [end, other] = std::mismatch(shared->begin(), shared->end(), folder.begin(), folder.end());
-    std::filesystem::path common;
-    for (auto part = shared->begin(); part != end; ++part) common /= *part;
-    shared = std::move(common);
-  }
-  return shared ? shared->string() : "";
-}
-
-Status name_places(std::vector<BulkInput>& files) {
-  namespace fs = std::filesystem;
-  std::map<std::string, std::string> taken;
-  for (BulkInput& input : files) {
-    const fs::path path = input.path.empty() ? input.source : input.path;
-    fs::path place = input.base.empty() ? path : path.lexically_relative(input.base);
-    const bool is_below = place.is_relative() && std::find(place.begin(), place.end(), "..") == place.end();
-    if (!is_below || (input.base.empty() && !input.is_found)) place = path.filename();
-    if (place.extension() == ".lode") place.replace_extension();
-    input.place = place.lexically_normal().string();
-    const auto [first, is_new] = taken.emplace(input.place, path.string());
-    if (is_new) continue;
-    return Error{ErrorCode::kUsage, path.string(), "has the same outputs as " + first->second};
-  }
-  return Ok{};
-}
 
 void write_document(JsonWriter& json, std::string_view document, std::size_t depth) {
   std::string inner;
@@ -234,70 +189,6 @@ int FileOutcome::print(const std::string& report) const {
   }
   for (const Error& error : late_errors) print_error(error);
   return exit_code;
-}
-
-void add_bulk_inputs(OptionParser& parser, BulkWords& words, const char* name, const char* help,
-                     const char* manifest_help) {
-  words.name = name;
-  parser.add_positionals(name, words.files, help, false);
-  parser.group("Input");
-  parser.add_value("--manifest FILE", words.manifest, manifest_help);
-}
-
-void add_bulk_outputs(OptionParser& parser, BulkWords& words) {
-  parser.add_value("--junit FILE", words.junit, "write a JUnit file with one test case per file (default: none)");
-}
-
-void add_bulk_resources(OptionParser& parser, BulkWords& words) {
-  add_jobs_option(parser, words.jobs);
-  parser.add_value("--max-memory SIZE", words.max_memory,
-                   "of many files, work on fewer at a time where they would need more, such as 8GiB; auto: what the "
-                   "machine has left");
-}
-
-Result<BulkInputs> find_bulk_inputs(const Verb& verb, const BulkWords& words, app::InputKind kind, ManifestSide side) {
-  if (words.files.empty() && words.manifest.empty()) {
-    return Error{ErrorCode::kUsage, "",
-                 std::string(words.name) + " is required; see meshlode " + verb.name + " --help"};
-  }
-  BulkInputs inputs;
-  std::error_code error;
-  const bool is_named = words.files.size() == 1 && words.manifest.empty();
-  inputs.is_single =
-      is_named && !std::filesystem::is_directory(words.files.front(), error) && !app::is_pattern(words.files.front());
-  for (const std::string& word : words.files) {
-    TRY_LET(found, app::find_inputs(word, kind));
-    const bool is_found = std::filesystem::is_directory(word, error) || app::is_pattern(word);
-    for (const std::filesystem::path& file : found->files) {
-      inputs.files.push_back({file.string(), {}, found->base.string(), is_found});
-    }
-  }
-  if (!words.manifest.empty()) {
-    TRY(check_is_manifest(words.manifest));
-    TRY_LET(manifest, app::read_manifest(words.manifest));
-    if (const auto id = find_file_id(words.manifest)) output_files().keep(*id);
-    const std::string base = shared_folder(manifest->results);
-    for (const app::JobResult& r : manifest->results) {
-      inputs.files.push_back(input_of(r, side));
-      if (side == ManifestSide::kAssets) inputs.files.back().base = base;
-    }
-  }
-  if (inputs.files.empty()) {
-    return Error{ErrorCode::kIo, words.manifest.empty() ? words.files.front() : words.manifest,
-                 kind == app::InputKind::kScenes ? "no scene in it" : "no asset in it"};
-  }
-  if (inputs.is_single && words.junit.empty()) return inputs;
-  if (inputs.is_single) {
-    inputs.is_single = false;  // its rows beside it
-    if (inputs.files.front().path == kStream) return inputs;
-  }
-  for (const BulkInput& input : inputs.files) {
-    if (input.path == kStream) return Error{ErrorCode::kUsage, "", "stdin is one file: give it alone"};
-    for (const std::string& path : {input.path, input.source}) {
-      if (const auto id = path.empty() ? std::nullopt : find_file_id(path)) output_files().keep(*id);
-    }
-  }
-  return inputs;
 }
 
 int run_bulk(const BulkVerb& verb, const std::vector<BulkInput>& files, const BulkWords& words,
@@ -371,6 +262,21 @@ int run_bulk(const BulkVerb& verb, const std::vector<BulkInput>& files, const Bu
   if (!is_streamed) take(write_output(report, text));
   if (!words.junit.empty()) take(write_text(words.junit, app::junit_xml(verb.name, tests)));
   return worst;
+}
+
+int write_bulk(const Verb& verb, const BulkWords& words, const BulkTarget& target, std::vector<BulkColumn> columns,
+               const OutputOptions& output, std::function<FileOutcome(const BulkInput&)> work) {
+  auto inputs = find_bulk_inputs(verb, words, app::InputKind::kAssets, ManifestSide::kAssets);
+  if (!inputs) return print_error(inputs.error());
+  const Status planned = plan_outputs(*inputs, words, target.what, target.extension);
+  if (!planned) return print_error(planned.error());
+  if (!inputs->is_single) {
+    return run_bulk({verb.name, std::move(columns), std::move(work)}, inputs->files, words, output);
+  }
+  JobLimit limit(words.jobs);
+  FileOutcome outcome;
+  limit.run([&] { outcome = work(inputs->files.front()); });
+  return outcome.print();
 }
 
 }  // namespace meshlode::cli

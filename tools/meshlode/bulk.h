@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -42,6 +43,7 @@ struct BulkInput {
   std::string base = {};    ///< the folder below which it was found; empty: none, or the current one
   bool is_found = false;    ///< below a folder or by a pattern
   std::string place = {};   ///< of name_places()
+  std::string output = {};  ///< of plan_outputs()
   /// A file of a manifest that no asset was made of, and why.
   int exit_code = 0;
   std::string error = {};
@@ -51,6 +53,8 @@ struct BulkWords {
   const char* name = "FILE";
   std::vector<std::string> files;
   std::string manifest, junit, max_memory = "auto";
+  std::optional<std::string> output;  ///< of one file
+  std::string folder;                 ///< of the outputs of many
   std::uint32_t jobs = 0;
 };
 
@@ -79,6 +83,8 @@ void add_bulk_inputs(OptionParser& parser, BulkWords& words, const char* name, c
                      const char* manifest_help);
 /// `--junit`, in the group of outputs.
 void add_bulk_outputs(OptionParser& parser, BulkWords& words);
+/// `-o` and `-O` of verbs that write a file for each, first in the group of outputs. `what`: "PNG".
+void add_bulk_targets(OptionParser& parser, BulkWords& words, const std::string& what);
 /// `--jobs` and `--max-memory`.
 void add_bulk_resources(OptionParser& parser, BulkWords& words);
 
@@ -94,10 +100,28 @@ void add_bulk_resources(OptionParser& parser, BulkWords& words);
 /// name. Error: kUsage where two files have one place.
 [[nodiscard]] Status name_places(std::vector<BulkInput>& files);
 
+/// Where each file's output goes: the one that was named, or PLACE + `extension` below the folder. All are claimed, so
+/// that none is a file that is read. Errors: kUsage, by the file's name where two have one output; kIo.
+[[nodiscard]] Status plan_outputs(BulkInputs& inputs, const BulkWords& words, const std::string& what,
+                                  const std::string& extension);
+
 /// Works on all and prints a row a file, with errors on stderr, or with --format json one document. A file that fails
 /// does not stop the others. `report`: where the rows or the document go, "-" for stdout. \returns the worst exit code
 [[nodiscard]] int run_bulk(const BulkVerb& verb, const std::vector<BulkInput>& files, const BulkWords& words,
                            const OutputOptions& output, const std::string& report = "-");
+
+/// What a verb writes for each file.
+struct BulkTarget {
+  const char* what;       ///< "PNG"
+  const char* extension;  ///< ".png"
+};
+constexpr const char* kAssetsHelp = ".lode assets, folders of them, or patterns such as 'out/**/*.lode'";
+
+/// All of a verb that reads assets and writes a file for each: the inputs, the outputs, and the work on one or many.
+/// \returns the worst exit code
+[[nodiscard]] int write_bulk(const Verb& verb, const BulkWords& words, const BulkTarget& target,
+                             std::vector<BulkColumn> columns, const OutputOptions& output,
+                             std::function<FileOutcome(const BulkInput&)> work);
 
 /// A document of JsonWriter::text() as a value in another, with the indentation of that depth.
 void write_document(JsonWriter& json, std::string_view document, std::size_t depth);

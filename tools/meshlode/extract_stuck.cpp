@@ -9,6 +9,7 @@
 #include "app/export/colored_sets.h"
 #include "app/report/info.h"
 #include "base/json_writer.h"
+#include "base/printable.h"
 #include "format/names.h"
 #include "streams.h"
 
@@ -38,7 +39,7 @@ struct ReasonCount {
 
 }  // namespace
 
-int extract_stuck(const run::Asset& asset, const std::string& output, const OutputOptions& out) {
+FileOutcome extract_stuck(const run::Asset& asset, const std::string& output, const OutputOptions& options) {
   const app::AssetInfo info = app::describe_asset(asset);
   std::array<ReasonCount, kLooks.size()> counts{};
   std::vector<app::ColoredSet> sets;
@@ -56,13 +57,19 @@ int extract_stuck(const run::Asset& asset, const std::string& output, const Outp
       if (!set.clusters.empty()) sets.push_back(std::move(set));
     }
   }
+  FileOutcome out;
+  const auto fail = [&](const Error& error) {
+    out.fail(error);
+    return out;
+  };
   const auto glb = app::export_colored_sets(asset, sets);
-  if (!glb) return print_error(glb.error());
-  if (const Status status = write_output(output, *glb); !status) return print_error(status.error());
+  if (!glb) return fail(glb.error());
+  if (const Status status = write_output(output, *glb); !status) return fail(status.error());
 
   std::uint64_t triangles = 0;
   for (const ReasonCount& count : counts) triangles += count.triangles;
-  if (out.json()) {
+  out.cells = {grouped_digits(triangles), grouped_digits(glb->size())};
+  if (options.json()) {
     JsonWriter w;
     w.begin_object();
     w.key("meshes");
@@ -83,9 +90,10 @@ int extract_stuck(const run::Asset& asset, const std::string& output, const Outp
     w.field("triangles", triangles);
     w.field("bytes", glb->size());
     w.end_object();
-    return print_out(w.text()) ? 0 : static_cast<int>(ErrorCode::kIo);
+    out.text = w.text();
+    return out;
   }
-  if (out.quiet) return 0;
+  if (options.quiet) return out;
   std::string text;
   char line[160];
   for (std::size_t k = 0; k < kLooks.size(); ++k) {
@@ -96,7 +104,8 @@ int extract_stuck(const run::Asset& asset, const std::string& output, const Outp
   }
   if (sets.empty()) text += "no stuck group: a glTF without meshes\n";
   text += output + ": " + std::to_string(triangles) + " triangles, " + std::to_string(glb->size()) + " bytes\n";
-  return print_beside(output, text) ? 0 : static_cast<int>(ErrorCode::kIo);
+  (output == kStream ? out.notes : out.text) = std::move(text);  // beside what went to stdout
+  return out;
 }
 
 }  // namespace meshlode::cli

@@ -12,12 +12,12 @@
 #include "app/export/export.h"
 #include "app/report/read_meta.h"
 #include "base/json_writer.h"
+#include "base/printable.h"
+#include "bulk.h"
 #include "extract_cuts.h"
 #include "extract_stuck.h"
 #include "file_kind.h"
 #include "options.h"
-#include "output_name.h"
-#include "outputs.h"
 #include "promise_option.h"
 #include "run/read/asset.h"
 #include "streams.h"
@@ -28,13 +28,13 @@ namespace meshlode::cli {
 namespace {
 
 struct ExtractOptions {
-  std::string input, promise = "position";
-  std::optional<std::string> output;
+  std::string promise = "position";
   std::optional<std::string> mesh;
   bool is_stuck = false;
   app::Packing packing;
   CutRequest request;
-  std::string max_decoded = kDefaultMaxDecodedText;
+  std::string max_decoded_text = kDefaultMaxDecodedText;
+  std::uint64_t max_decoded = 0;
   OutputOptions out;
 };
 
@@ -42,10 +42,10 @@ Error usage(const char* option, const char* detail) {
   return Error{ErrorCode::kUsage, option, detail};
 }
 
-Status check_options(const ExtractOptions& o) {
-  if (!o.output) return usage("-o", "name the GLB to write");
-  if (*o.output == kStream && o.out.json()) return usage("-o", "- and --format json both mean stdout");
-  if (Status name = check_output_name("-o", *o.output, ".glb"); !name) return name;
+Status check_options(const ExtractOptions& o, const BulkWords& bulk) {
+  if (bulk.output && *bulk.output == kStream && o.out.json()) {
+    return usage("-o", "- and --format json both mean stdout");
+  }
   if (o.is_stuck) {
     if (o.request.has_way() || o.request.bounds.has_any() || o.mesh || o.packing.quantize || o.packing.meshopt)
       return usage("--stuck", "cannot be combined with a cut, a bound, --mesh, --quantize or --meshopt");
@@ -204,14 +204,54 @@ Result<std::vector<std::uint8_t>> export_cuts(const run::Asset& asset, const std
   return app::export_glb_lods(asset, chains, packing);
 }
 
+FileOutcome extract_file(const BulkInput& input, const ExtractOptions& o) {
+  FileOutcome out;
+  const auto fail = [&](Error error) {
+    out.fail(std::move(error));
+    return out;
+  };
+  const CutRequest& r = o.request;
+  auto asset = open_asset(input.path, o.max_decoded);
+  if (!asset) return fail(asset.error());
+  if (const Status promised = choose_promise(o.promise, *asset); !promised) return fail(promised.error());
+  if (o.is_stuck) return extract_stuck(*asset, input.output, o.out);
+  auto chosen = choose_meshes(*asset, o.mesh);
+  if (!chosen) return fail(chosen.error());
+  const auto cuts = choose_cuts(r, *asset, *chosen);
+  if (!cuts) return fail(cuts.error());
+  auto glb = export_cuts(*asset, *cuts, o.packing);
+  if (!glb) {
+    Error error = glb.error();
+    error.where = error.where.empty() ? input.path : input.path + ": " + error.where;
+    return fail(std::move(error));
+  }
+  if (auto status = write_output(input.output, *glb); !status) return fail(status.error());
+  std::uint64_t triangles = 0;
+  for (const MeshCuts& mesh : *cuts) {
+    for (const CutLevel& level : mesh.levels) triangles += level.triangles;
+  }
+  out.cells = {grouped_digits(triangles), grouped_digits(glb->size())};
+  if (o.out.json()) {
+    out.text = describe_json(*asset, *cuts, r.is_chain(), glb->size());
+  } else if (!o.out.quiet) {
+    // Beside what went to stdout.
+    (input.output == kStream ? out.notes : out.text) =
+        describe_text(*asset, *cuts, r.is_chain(), glb->size(), input.output);
+  }
+  return out;
+}
+
 int run_extract(const Verb& verb, std::span<char* const> args) {
   ExtractOptions o;
   CutRequest& r = o.request;
+  BulkWords bulk;
   OptionParser parser(verb);
-  parser.add_positional("FILE", o.input, "a .lode asset");
+  add_bulk_inputs(parser, bulk, "FILE", kAssetsHelp,
+                  "extract from the assets of this manifest of a build (default: none)");
   parser.group("Output");
-  parser.add_value("-o,--output FILE", o.output, "GLB to write, or - for stdout (required)");
+  add_bulk_targets(parser, bulk, "GLB");
   add_output_options(parser, o.out);
+  add_bulk_outputs(parser, bulk);
   parser.add_value("--mesh NAME|INDEX", o.mesh,
                    "export only this mesh; nodes of others stay, without a mesh (default: all meshes)");
   parser.add_flag("--quantize", o.packing.quantize,
@@ -237,45 +277,25 @@ int run_extract(const Verb& verb, std::span<char* const> args) {
   parser.group("Camera");
   add_camera_options(parser, r.camera);
   parser.group("Resources");
-  add_max_decoded_option(parser, o.max_decoded);
+  add_bulk_resources(parser, bulk);
+  add_max_decoded_option(parser, o.max_decoded_text);
   if (const auto exit_code = parser.parse(args)) return *exit_code;
-  if (auto status = check_options(o); !status) return print_error(status.error());
-
-  const Result<std::uint64_t> max_decoded = parse_max_decoded(o.max_decoded);
+  if (auto status = check_options(o, bulk); !status) return print_error(status.error());
+  const Result<std::uint64_t> max_decoded = parse_max_decoded(o.max_decoded_text);
   if (!max_decoded) return print_error(max_decoded.error());
-  auto asset = open_asset(o.input, *max_decoded);
-  if (!asset) return print_error(asset.error());
-  if (const Status promised = choose_promise(o.promise, *asset); !promised) return print_error(promised.error());
-  if (const auto id = asset->file_id()) output_files().keep(*id);
-  if (const Status free = claim_output(*o.output); !free) return print_error(free.error());
-  if (o.is_stuck) return extract_stuck(*asset, *o.output, o.out);
-  auto chosen = choose_meshes(*asset, o.mesh);
-  if (!chosen) return print_error(chosen.error());
-  const auto cuts = choose_cuts(r, *asset, *chosen);
-  if (!cuts) return print_error(cuts.error());
-  auto glb = export_cuts(*asset, *cuts, o.packing);
-  if (!glb) {
-    Error error = glb.error();
-    error.where = error.where.empty() ? o.input : o.input + ": " + error.where;
-    return print_error(error);
-  }
-  if (auto status = write_output(*o.output, *glb); !status) return print_error(status.error());
-  if (o.out.json()) {
-    if (!print_out(describe_json(*asset, *cuts, r.is_chain(), glb->size()))) return static_cast<int>(ErrorCode::kIo);
-  } else if (!o.out.quiet) {
-    if (!print_beside(*o.output, describe_text(*asset, *cuts, r.is_chain(), glb->size(), *o.output))) {
-      return static_cast<int>(ErrorCode::kIo);
-    }
-  }
-  return 0;
+  o.max_decoded = *max_decoded;
+  return write_bulk(verb, bulk, {"GLB", ".glb"}, {{"triangles", 11}, {"bytes", 13}}, o.out,
+                    [&](const BulkInput& input) { return extract_file(input, o); });
 }
 
 }  // namespace
 
 const Verb kExtractVerb{"extract", "write a cut of an asset as a GLB",
                         "Writes the triangles of one cut, or a chain of discrete levels of detail, as a binary glTF "
-                        "with the scene's nodes, names, instances, materials and textures.",
+                        "with the scene's nodes, names, instances, materials and textures. Of many files each is "
+                        "written below the folder of -O.",
                         "meshlode extract scene.lode --error 0.001 --relative -o cut.glb\n"
+                        "  meshlode extract out/ --triangles 20000 -O fallbacks\n"
                         "  meshlode extract scene.lode --triangles 20000 -o fallback.glb\n"
                         "  meshlode extract scene.lode --triangles 20000 --quantize --meshopt -o small.glb\n"
                         "  meshlode extract scene.lode --lods 4 -o levels.glb\n"

@@ -5,12 +5,17 @@
 #include <cstdio>
 #include <filesystem>
 #include <map>
+#include <mutex>
+#include <utility>
 
 #include "base/byte_size.h"
 #include "base/json_writer.h"
+#include "base/printable.h"
 #include "base/try.h"
 #include "bounds_options.h"
+#include "bulk.h"
 #include "camera_options.h"
+#include "compare_folder.h"
 #include "draw/gpu/render.h"
 #include "draw/gpu/shaders/frame.h"
 #include "draw/raster/legend.h"
@@ -18,8 +23,6 @@
 #include "explain.h"
 #include "file_kind.h"
 #include "options.h"
-#include "output_name.h"
-#include "outputs.h"
 #include "promise_option.h"
 #include "verb.h"
 
@@ -28,7 +31,7 @@ namespace meshlode::cli {
 namespace {
 
 struct RenderOptions {
-  std::string input, output, view = "shaded", promise = "position";
+  std::string view = "shaded", promise = "position";
   CameraOptions camera;
   BoundsOptions bounds;
   std::optional<double> error;
@@ -36,8 +39,8 @@ struct RenderOptions {
   bool gpu = false, explain = false;
   bool is_strict = false;  ///< a warning is an error
   std::string device, force;
-  std::uint32_t jobs = 0;
-  std::string max_decoded = kDefaultMaxDecodedText;
+  std::string max_decoded_text = kDefaultMaxDecodedText;
+  std::uint64_t max_decoded = 0;
   OutputOptions report;
 };
 
@@ -114,10 +117,11 @@ RenderStats measure(const run::Asset& asset, const std::vector<run::ClusterInsta
   return stats;
 }
 
-std::string stats_json(const RenderOptions& options, const run::Camera& camera, const RenderStats& stats) {
+std::string stats_json(const std::string& output, const RenderOptions& options, const run::Camera& camera,
+                       const RenderStats& stats) {
   JsonWriter json;
   json.begin_object();
-  json.field("output", std::filesystem::path(options.output).filename().string());
+  json.field("output", std::filesystem::path(output).filename().string());
   json.field("view", options.view);
   json.field("width", camera.width);
   json.field("height", camera.height);
@@ -160,7 +164,7 @@ std::string stats_json(const RenderOptions& options, const run::Camera& camera, 
   return json.text();
 }
 
-std::string stats_text(const RenderOptions& options, const run::Camera& camera, const RenderStats& stats) {
+std::string stats_text(const std::string& output, const run::Camera& camera, const RenderStats& stats) {
   char line[256];
   const double pixels = static_cast<double>(camera.width) * camera.height;
   std::snprintf(
@@ -170,7 +174,7 @@ std::string stats_text(const RenderOptions& options, const run::Camera& camera, 
       static_cast<unsigned long long>(stats.clusters), stats.finest_level, stats.coarsest_level,
       static_cast<unsigned long long>(stats.visible_clusters),
       100.0 * static_cast<double>(stats.covered_pixels) / pixels);
-  return options.output + line;
+  return output + line;
 }
 
 struct Drawn {
@@ -179,34 +183,47 @@ struct Drawn {
   draw::Image image;
 };
 
+/// What is drawn of one asset, and what is said of it on stderr.
+struct RenderJob {
+  const std::string& input;
+  const run::Asset& asset;
+  const run::Camera& camera;
+  const RenderOptions& options;
+  const run::AttributeBounds& bounds;
+  std::string& notes;
+};
+
 /// Errors: `damage`; with --strict kUnsupported, where there is a warning: the picture would not be what the asset
 /// describes.
-Status print_warnings(const std::vector<std::string>& warnings, const Status& damage, const RenderOptions& options) {
-  for (const std::string& warning : warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
+Status note_warnings(const std::vector<std::string>& warnings, const Status& damage, const RenderJob& job) {
+  for (const std::string& warning : warnings) job.notes += "warning: " + warning + "\n";
   if (!damage) return damage;
-  if (warnings.empty() || !options.is_strict) return Ok{};
-  return Error{ErrorCode::kUnsupported, options.input, "--strict: not all images can be drawn"};
+  if (warnings.empty() || !job.options.is_strict) return Ok{};
+  return Error{ErrorCode::kUnsupported, job.input, "--strict: not all images can be drawn"};
 }
 
 /// By the device; what it says of its passes and of images is printed also where no picture came of it.
-Result<Drawn> draw_on_gpu(const run::Asset& asset, const run::Camera& camera, const RenderOptions& options,
-                          const run::AttributeBounds& bounds, draw::ImageBudget& images) {
+Result<Drawn> draw_on_gpu(const RenderJob& job, draw::ImageBudget& images) {
+  const RenderOptions& options = job.options;
   draw::GpuRenderOptions render;
   render.device = options.device;
   render.view = view_number(options.view);
   render.pixel_error = options.camera.pixel_error;
-  render.bounds = bounds;
+  render.bounds = job.bounds;
   if (!options.force.empty()) render.force.push_back(options.force);
   draw::GpuPicture picture;
-  const Status drawn = draw::render_on_gpu(asset, camera, render, images, picture);
-  const Status complete = print_warnings(picture.warnings, drawn, options);
-  if (options.explain) std::fprintf(stderr, "passes of %s\n%s", picture.device.c_str(), picture.plan.c_str());
+  // One at a time: files that share a device would share its memory.
+  static std::mutex device;
+  const std::lock_guard lock(device);
+  const Status drawn = draw::render_on_gpu(job.asset, job.camera, render, images, picture);
+  const Status complete = note_warnings(picture.warnings, drawn, job);
+  if (options.explain) job.notes += "passes of " + picture.device + "\n" + picture.plan;
   if (!complete) return complete.error();
   return Drawn{std::move(picture.cut), std::move(picture.visibility), std::move(picture.image)};
 }
 
-Result<Drawn> draw_on_cpu(const run::Asset& asset, const run::Camera& camera, const RenderOptions& options,
-                          const run::AttributeBounds& bounds, draw::ImageBudget& images) {
+Result<Drawn> draw_on_cpu(const RenderJob& job, draw::ImageBudget& images) {
+  const auto& [input, asset, camera, options, bounds, notes] = job;
   std::vector<run::ClusterInstance> cut;
   if (options.error) {
     TRY_LET(uniform, uniform_cut(asset, *options.error, options.is_relative, bounds));
@@ -219,27 +236,61 @@ Result<Drawn> draw_on_cpu(const run::Asset& asset, const run::Camera& camera, co
   }
   const std::vector<draw::MaterialTextures> materials = draw::read_material_textures(asset);
   const draw::AlphaMasks masks = draw::load_alpha_masks(asset, materials, images);
-  TRY(print_warnings(masks.warnings, masks.damage, options));
+  TRY(note_warnings(masks.warnings, masks.damage, job));
   const auto view = static_cast<draw::View>(view_number(options.view));
-  if (options.explain) std::fprintf(stderr, "%s", describe_cpu_passes(asset, masks, view).c_str());
+  if (options.explain) notes += describe_cpu_passes(asset, masks, view);
   TRY_LET(visibility, draw::draw_cut(asset, cut, camera, masks));
   draw::TextureSet textures;
   if (view == draw::View::kShaded) textures = draw::load_textures(asset, materials, images);
-  if (const Status complete = print_warnings(textures.warnings, textures.damage, options); !complete)
-    return complete.error();
+  TRY(note_warnings(textures.warnings, textures.damage, job));
   TRY_LET(image, draw::shade_view(asset, cut, camera, *visibility, view, textures));
   return Drawn{std::move(cut), std::move(*visibility), std::move(*image)};
 }
 
+FileOutcome render_file(const BulkInput& input, const RenderOptions& options) {
+  FileOutcome out;
+  const auto fail = [&](Error error) {
+    out.fail(std::move(error));
+    return out;
+  };
+  Result<run::Asset> asset = open_asset(input.path, options.max_decoded);
+  if (!asset) return fail(asset.error());
+  if (const Status chosen = choose_promise(options.promise, *asset); !chosen) return fail(chosen.error());
+  const Result<run::Camera> camera = make_camera(options.camera, *asset);
+  if (!camera) return fail(camera.error());
+  const Result<run::AttributeBounds> bounds = make_bounds(options.bounds, *asset);
+  if (!bounds) return fail(bounds.error());
+  if (options.explain) out.notes += describe_recorded_plan(*asset);
+  draw::ImageBudget images(options.max_decoded);
+  const RenderJob job{input.path, *asset, *camera, options, *bounds, out.notes};
+  const Result<Drawn> drawn = options.gpu ? draw_on_gpu(job, images) : draw_on_cpu(job, images);
+  if (!drawn) {
+    Error error = drawn.error();
+    if (error.code == ErrorCode::kInvalid) error.where = input.path + (error.where.empty() ? "" : ": ") + error.where;
+    return fail(std::move(error));
+  }
+  if (const Status written = write_png(input.output, drawn->image); !written) return fail(written.error());
+  const RenderStats stats = measure(*asset, drawn->cut, drawn->visibility);
+  out.cells = {grouped_digits(stats.triangles), grouped_digits(stats.clusters)};
+  if (options.report.json()) {
+    out.text = stats_json(input.output, options, *camera, stats);
+  } else if (!options.report.quiet) {
+    out.text = stats_text(input.output, *camera, stats);
+  }
+  return out;
+}
+
 int run_render(const Verb& verb, std::span<char* const> args) {
   RenderOptions options;
+  BulkWords bulk;
   OptionParser parser(verb);
-  parser.add_positional("FILE", options.input, "a .lode asset");
+  add_bulk_inputs(parser, bulk, "FILE", kAssetsHelp, "draw the assets of this manifest of a build (default: none)");
   parser.group("Output");
-  parser.add_value("-o,--output FILE", options.output, "PNG to write (required)");
+  add_bulk_targets(parser, bulk, "PNG");
   parser.add_value("--view", options.view, "what the colours show; those after levels need --gpu",
                    {std::begin(kGpuViews), std::end(kGpuViews)});
   add_output_options(parser, options.report);
+  add_bulk_outputs(parser, bulk);
   parser.add_flag("-v,--explain", options.explain, "print what the asset keeps and which passes run, and why");
   parser.add_flag("--strict", options.is_strict, "fail and write nothing if an image cannot be drawn");
   parser.group("Camera");
@@ -256,13 +307,9 @@ int run_render(const Verb& verb, std::span<char* const> args) {
   parser.add_value("--force", options.force, "run a pass that the scene does not need (default: none)",
                    {"double-sided", "alpha-mask", "occlusion", "hardware", "textures", "all"});
   parser.group("Resources");
-  add_jobs_option(parser, options.jobs);
-  add_max_decoded_option(parser, options.max_decoded);
+  add_bulk_resources(parser, bulk);
+  add_max_decoded_option(parser, options.max_decoded_text);
   if (const auto exit_code = parser.parse(args)) return *exit_code;
-  if (options.output.empty()) return print_error({ErrorCode::kUsage, "--output", "name the PNG to write"});
-  if (const Status name = check_output_name("--output", options.output, ".png"); !name) {
-    return print_error(name.error());
-  }
   if (options.error && !(*options.error >= 0.0 && std::isfinite(*options.error))) {
     return print_error({ErrorCode::kUsage, "--error", "give an error of 0 or more"});
   }
@@ -275,41 +322,11 @@ int run_render(const Verb& verb, std::span<char* const> args) {
     return print_error({ErrorCode::kUsage, "--view", options.view + " needs --gpu"});
   }
 
-  const Result<std::uint64_t> max_decoded = parse_max_decoded(options.max_decoded);
+  const Result<std::uint64_t> max_decoded = parse_max_decoded(options.max_decoded_text);
   if (!max_decoded) return print_error(max_decoded.error());
-
-  const JobLimit limit(options.jobs);
-  Result<run::Asset> asset = open_asset(options.input, *max_decoded);
-  if (!asset) return print_error(asset.error());
-  if (const Status chosen = choose_promise(options.promise, *asset); !chosen) return print_error(chosen.error());
-  if (const auto id = asset->file_id()) output_files().keep(*id);
-  if (const Status free = output_files().claim(options.output); !free) return print_error(free.error());
-  const Result<run::Camera> camera = make_camera(options.camera, *asset);
-  if (!camera) return print_error(camera.error());
-
-  const Result<run::AttributeBounds> bounds = make_bounds(options.bounds, *asset);
-  if (!bounds) return print_error(bounds.error());
-
-  const auto fail = [&](Error error) {
-    if (error.code == ErrorCode::kInvalid)
-      error.where = options.input + (error.where.empty() ? "" : ": ") + error.where;
-    return print_error(error);
-  };
-  if (options.explain) std::fprintf(stderr, "%s", describe_recorded_plan(*asset).c_str());
-  draw::ImageBudget images(*max_decoded);
-  const Result<Drawn> drawn = options.gpu ? draw_on_gpu(*asset, *camera, options, *bounds, images)
-                                          : draw_on_cpu(*asset, *camera, options, *bounds, images);
-  if (!drawn) return fail(drawn.error());
-  const std::vector<run::ClusterInstance>& cut = drawn->cut;
-  const draw::VisibilityBuffer& visibility = drawn->visibility;
-  const std::vector<std::uint8_t> png = draw::encode_png(drawn->image);
-  if (png.empty()) return print_error({ErrorCode::kIo, options.output, "the picture is too large to compress"});
-  if (const Status written = output_files().write(options.output, png); !written) return print_error(written.error());
-  if (options.report.quiet && !options.report.json()) return 0;
-  const RenderStats stats = measure(*asset, cut, visibility);
-  const std::string text =
-      options.report.json() ? stats_json(options, *camera, stats) : stats_text(options, *camera, stats);
-  return print_out(text) ? 0 : static_cast<int>(ErrorCode::kIo);
+  options.max_decoded = *max_decoded;
+  return write_bulk(verb, bulk, {"PNG", ".png"}, {{"triangles", 11}, {"clusters", 9}}, options.report,
+                    [&](const BulkInput& input) { return render_file(input, options); });
 }
 
 }  // namespace
@@ -317,8 +334,11 @@ int run_render(const Verb& verb, std::span<char* const> args) {
 const Verb kRenderVerb{
     "render", "draw a cut as a PNG: shaded, or coloured by cluster, triangle or level",
     "Selects the clusters for a camera and an allowed error on the screen, or the uniform cut at one error, and draws "
-    "them with the reference rasterizer of the CPU or, with --gpu, on a Vulkan device. Both draw the same pixels.",
+    "them with the reference rasterizer of the CPU or, with --gpu, on a Vulkan device. Both draw the same pixels. Of "
+    "many files each is "
+    "drawn below the folder of -O.",
     "meshlode render scene.lode -o scene.png --pixel-error 2 --view clusters\n"
+    "  meshlode render out/ -O thumbnails --size 320x180\n"
     "  meshlode render scene.lode -o coarse.png --error 0.01 --relative --size 640x480",
     run_render};
 

@@ -9,10 +9,11 @@
 
 #include "base/hash.h"
 #include "base/json_writer.h"
+#include "base/printable.h"
+#include "bulk.h"
 #include "file_kind.h"
 #include "format/names.h"
 #include "options.h"
-#include "output_name.h"
 #include "outputs.h"
 #include "repacked.h"
 #include "run/read/asset.h"
@@ -24,19 +25,19 @@ namespace meshlode::cli {
 namespace {
 
 struct RepackOptions {
-  std::string input;
-  std::optional<std::string> output, codec;
-  std::uint32_t jobs = 0;
-  std::string max_decoded = kDefaultMaxDecodedText;
+  std::optional<std::string> codec_name;
+  format::Codec codec{};
+  std::string max_decoded_text = kDefaultMaxDecodedText;
+  std::uint64_t max_decoded = 0;
   OutputOptions out;
 };
 
-std::string describe_json(const RepackOptions& o, const run::Asset& asset, std::size_t bytes) {
+std::string describe_json(const BulkInput& input, const RepackOptions& o, const run::Asset& asset, std::size_t bytes) {
   JsonWriter w;
   w.begin_object();
-  w.field("file", o.input);
-  w.field("output", *o.output);
-  w.field("codec", *o.codec);
+  w.field("file", input.path);
+  w.field("output", input.output);
+  w.field("codec", *o.codec_name);
   w.field("content_hash", to_hex(run::stated_hash(asset)));
   w.field("input_bytes", asset.bytes().size());
   w.field("bytes", bytes);
@@ -44,59 +45,67 @@ std::string describe_json(const RepackOptions& o, const run::Asset& asset, std::
   return w.text();
 }
 
-std::string describe_text(const RepackOptions& o, const run::Asset& asset, std::size_t bytes) {
-  return o.input + ": " + std::to_string(asset.bytes().size()) + " bytes -> " + *o.output + ", " +
-         std::to_string(bytes) + " bytes with " + *o.codec + ", content " + to_hex(run::stated_hash(asset)) + "\n";
+std::string describe_text(const BulkInput& input, const RepackOptions& o, const run::Asset& asset, std::size_t bytes) {
+  return input.path + ": " + std::to_string(asset.bytes().size()) + " bytes -> " + input.output + ", " +
+         std::to_string(bytes) + " bytes with " + *o.codec_name + ", content " + to_hex(run::stated_hash(asset)) + "\n";
 }
 
-/// The place within the file, after its name.
-int print_error_in(const std::string& file, Error error) {
-  error.where = error.where.empty() ? file : file + ": " + error.where;
-  return print_error(error);
+FileOutcome repack_file(const BulkInput& input, const RepackOptions& o) {
+  FileOutcome out;
+  const auto fail = [&](Error error) {
+    out.fail(std::move(error));
+    return out;
+  };
+  const auto asset = open_asset(input.path, o.max_decoded);
+  if (!asset) return fail(asset.error());
+  const auto bytes = repacked(*asset, o.codec);
+  if (!bytes) {
+    Error error = bytes.error();  // the place within the file, after its name
+    error.where = error.where.empty() ? input.path : input.path + ": " + error.where;
+    return fail(std::move(error));
+  }
+  if (const Status status = output_files().write(input.output, *bytes); !status) return fail(status.error());
+  out.cells = {grouped_digits(asset->bytes().size()), grouped_digits(bytes->size())};
+  if (o.out.json()) {
+    out.text = describe_json(input, o, *asset, bytes->size());
+  } else if (!o.out.quiet) {
+    out.text = describe_text(input, o, *asset, bytes->size());
+  }
+  return out;
 }
 
 int run_repack(const Verb& verb, std::span<char* const> args) {
   RepackOptions o;
+  BulkWords bulk;
   OptionParser parser(verb);
-  parser.add_positional("FILE", o.input, "a .lode asset");
+  add_bulk_inputs(parser, bulk, "FILE", kAssetsHelp, "repack the assets of this manifest of a build (default: none)");
   parser.group("Output");
-  parser.add_value("-o,--output FILE", o.output, "asset to write (required)");
-  parser.add_value("--codec", o.codec, "compression of pages on disk (required)",
+  add_bulk_targets(parser, bulk, "asset");
+  parser.add_value("--codec", o.codec_name, "compression of pages on disk (required)",
                    all_names(format::kWrittenCodecNames));
   add_output_options(parser, o.out);
+  add_bulk_outputs(parser, bulk);
   parser.group("Resources");
-  add_jobs_option(parser, o.jobs);
-  add_max_decoded_option(parser, o.max_decoded);
+  add_bulk_resources(parser, bulk);
+  add_max_decoded_option(parser, o.max_decoded_text);
   if (const auto exit_code = parser.parse(args)) return *exit_code;
-  if (!o.output) return print_error({ErrorCode::kUsage, "-o", "name the asset to write"});
-  if (!o.codec) return print_error({ErrorCode::kUsage, "--codec", "name the codec"});
-  if (const Status name = check_output_name("-o", *o.output, ".lode"); !name) return print_error(name.error());
-  const std::optional<format::Codec> codec = value_in(format::kWrittenCodecNames, *o.codec);
-  const Result<std::uint64_t> max_decoded = parse_max_decoded(o.max_decoded);
+  if (!o.codec_name) return print_error({ErrorCode::kUsage, "--codec", "name the codec"});
+  o.codec = *value_in(format::kWrittenCodecNames, *o.codec_name);
+  const Result<std::uint64_t> max_decoded = parse_max_decoded(o.max_decoded_text);
   if (!max_decoded) return print_error(max_decoded.error());
-
-  const auto asset = open_asset(o.input, *max_decoded);
-  if (!asset) return print_error(asset.error());
-  if (const auto id = asset->file_id()) output_files().keep(*id);
-  if (const Status free = output_files().claim(*o.output); !free) return print_error(free.error());
-  Result<std::vector<std::uint8_t>> bytes = Error{};
-  JobLimit jobs(o.jobs);
-  jobs.run([&] { bytes = repacked(*asset, *codec); });
-  if (!bytes) return print_error_in(o.input, bytes.error());
-  if (const Status status = output_files().write(*o.output, *bytes); !status) return print_error(status.error());
-  if (o.out.quiet && !o.out.json()) return 0;
-  const std::string text =
-      o.out.json() ? describe_json(o, *asset, bytes->size()) : describe_text(o, *asset, bytes->size());
-  return print_out(text) ? 0 : static_cast<int>(ErrorCode::kIo);
+  o.max_decoded = *max_decoded;
+  return write_bulk(verb, bulk, {"asset", ".lode"}, {{"bytes", 13}, {"new bytes", 13}}, o.out,
+                    [&](const BulkInput& input) { return repack_file(input, o); });
 }
 
 }  // namespace
 
-const Verb kRepackVerb{
-    "repack", "store an asset's pages with another codec, without a new build",
-    "Decodes each page and stores it with another codec. The decoded content, and so its content hash, stays the same.",
-    "meshlode repack scene.lode -o small.lode --codec strips\n"
-    "  meshlode repack scene.lode -o plain.lode --codec none",
-    run_repack};
+const Verb kRepackVerb{"repack", "store an asset's pages with another codec, without a new build",
+                       "Decodes each page and stores it with another codec. The decoded content, and so its content "
+                       "hash, stays the same. Of many files each is written below the folder of -O.",
+                       "meshlode repack scene.lode -o small.lode --codec strips\n"
+                       "  meshlode repack out/ -O small --codec strips\n"
+                       "  meshlode repack scene.lode -o plain.lode --codec none",
+                       run_repack};
 
 }  // namespace meshlode::cli

@@ -23,7 +23,11 @@ figure { margin: 0; }
 figure img { width: 100%; height: auto; display: block; image-rendering: pixelated; border: 1px solid var(--line); }
 figcaption { color: var(--quiet); font-size: 13px; }
 pre { overflow-x: auto; font-size: 13px; margin: 4px 0; }
-@media (max-width: 800px) { .trio { grid-template-columns: minmax(0, 1fr); } }
+th:first-child { min-width: 110px; }
+@media (max-width: 800px) {
+  .trio { grid-template-columns: minmax(0, 1fr); }
+  th:nth-child(3), th:nth-child(4), td:nth-child(3), td:nth-child(4) { display: none; }
+}
 )css";
 
 bool is_bad(const ComparedFile& file) {
