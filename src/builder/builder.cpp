@@ -19,6 +19,7 @@
 #include "builder/progress_meter.h"
 #include "builder/stage_clock.h"
 #include "builder/stage_options.h"
+#include "builder/stored_images.h"
 #include "builder/survey.h"
 #include "builder/write/write.h"
 #include "builder/write_meta.h"
@@ -98,9 +99,10 @@ Result<std::vector<std::uint8_t>> build_asset_of(const Source& given, PipelineOp
     input.materials = &found->coarse.materials;
     input.document = &found->coarse.document;
   }
-  input.meta_json = meta_json(scene, options, report.decisions, parts);
-
   StageClock clock;
+  TRY_LET(images, store_images(scene, options, report.decisions));
+  if (!images->blobs.empty()) input.blobs = &images->blobs;
+  input.meta_json = meta_json(scene, options, report.decisions, parts, images->replaced);
   Result<std::vector<std::uint8_t>> bytes = write_asset(std::move(input));
   clock.end(Stage::kWrite);
   clock.add_to(report.stages);

@@ -10,8 +10,11 @@
 #include <meshlode/build.h>
 #include <meshlode/format.h>
 
+#include "builder/textures/texture_choice.h"
+
 namespace meshlode::builder {
 
+class ImageConverter;
 class LookReader;
 class MeshStore;
 struct BuildHooks;
@@ -58,7 +61,9 @@ struct SceneOptions {
   MeshStore* mesh_store = nullptr;  ///< meshes that were built before (builder/store/mesh_store.h); the same bytes
   /// Images of materials, for aggregates (builder/aggregate/material_looks.h). None: textured meshes are no aggregates.
   const LookReader* looks = nullptr;
-  const BuildHooks* hooks = nullptr;  ///< of a study (builder/hooks.h)
+  TextureChoice textures;                  ///< what becomes of images
+  const ImageConverter* images = nullptr;  ///< which does it (builder/textures/image_converter.h)
+  const BuildHooks* hooks = nullptr;       ///< of a study (builder/hooks.h)
   /// One for each mesh of the scene, in the place of the whole's; empty: all as the whole.
   std::vector<MeshOptions> mesh_options;
 };

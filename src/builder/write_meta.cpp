@@ -154,6 +154,7 @@ Json settings_json(const scene::Scene& scene, const PipelineOptions& options,
   if (options.page_kib != kUsualPageKib) settings["page_size"] = options.page_kib;
   if (options.page_order != PageOrder::kLevel) settings["page_order"] = name_of(options.page_order);
   if (options.root_bytes != 0) settings["root_bytes"] = options.root_bytes;
+  if (!options.textures.is_keep()) settings["textures"] = texture_word(options.textures);
   if (options.hooks != nullptr) settings["experimental"] = Json::parse(options.hooks->record, nullptr, false);
   put_budgets(settings, options);
   put_mesh_settings(settings, options, own);
@@ -267,12 +268,20 @@ std::string meta_with_tier(std::string_view meta, format::ErrorTier tier) {
 }
 
 std::string meta_json(const scene::Scene& scene, const PipelineOptions& options,
-                      const std::vector<PlanDecision>& decisions, std::span<const scene::MeshPart> parts) {
+                      const std::vector<PlanDecision>& decisions, std::span<const scene::MeshPart> parts,
+                      std::span<const SourceImage> replaced) {
   Json meta;
   meta["generator"] = program_version();
   meta["source"] = {{"file", scene.source_name}, {"hash", scene.source_hash}};
   meta["settings"] = settings_json(scene, options, decisions);
   if (!parts.empty()) meta["parts"] = parts_json(parts, scene.meshes.size());
+  for (const SourceImage& image : replaced) {
+    meta["source_images"].push_back({{"blob", image.blob},
+                                     {"mime_type", image.mime_type},
+                                     {"bytes", image.bytes},
+                                     {"width", image.width},
+                                     {"height", image.height}});
+  }
   meta["plan"] = Json::array();
   for (const PlanDecision& decision : decisions) {
     meta["plan"].push_back({{"what", decision.what}, {"kept", decision.kept}, {"reason", decision.reason}});

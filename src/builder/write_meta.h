@@ -11,14 +11,16 @@
 
 #include "builder/options.h"
 #include "builder/plan/plan.h"
+#include "builder/stored_images.h"
 #include "scene/parts/split_parts.h"
 
 namespace meshlode::builder {
 
-/// `parts`: which meshes of the scene, its last, are parts of others.
+/// `parts`: which meshes of the scene, its last, are parts of others. `replaced`: images that are not the source's.
 [[nodiscard]] std::string meta_json(const scene::Scene& scene, const PipelineOptions& options,
                                     const std::vector<PlanDecision>& decisions,
-                                    std::span<const scene::MeshPart> parts = {});
+                                    std::span<const scene::MeshPart> parts = {},
+                                    std::span<const SourceImage> replaced = {});
 
 /// The same text with another name for the codec in its settings, to the byte. A text that is no JSON, or does not say
 /// a codec, stays as it is.

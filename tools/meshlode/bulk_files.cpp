@@ -87,8 +87,7 @@ Status name_places(std::vector<BulkInput>& files) {
   return Ok{};
 }
 
-Status plan_outputs(BulkInputs& inputs, const BulkWords& words, const std::string& what,
-                    const std::string& extension) {
+Status plan_outputs(BulkInputs& inputs, const BulkWords& words, const std::string& what, const std::string& extension) {
   if (words.output && !words.folder.empty()) return Error{ErrorCode::kUsage, "-o", "cannot be combined with -O"};
   if (!words.output && words.folder.empty()) return Error{ErrorCode::kUsage, "-o", "name the " + what + " to write"};
   if (words.output && inputs.files.size() != 1) {

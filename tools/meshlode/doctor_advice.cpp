@@ -8,10 +8,11 @@
 #include <utility>
 
 #include "app/report/read_meta.h"
+#include "app/textures/shrink.h"
 #include "base/append_format.h"
 #include "base/byte_size.h"
+#include "base/image_size.h"
 #include "builder/aggregate/aggregate_choice.h"
-#include "builder/plan/image_size.h"
 #include "scene/detect/detect.h"
 #include "scene/detect/fault.h"
 
@@ -50,9 +51,12 @@ class Images {
     bytes_ += image.size();
     const std::string kind = mime.empty() ? "unknown" : std::string(mime.substr(mime.find('/') + 1));
     if (std::ranges::find(formats_, kind) == formats_.end()) formats_.push_back(kind);
-    const auto size = builder::read_image_size(image);
+    const auto size = read_image_size(image);
     if (!size) return;
-    gpu_bytes_ += std::uint64_t{size->width} * size->height * 4 / 3 * 4;
+    if (const auto gpu_bytes = find_gpu_bytes(image)) {
+      gpu_bytes_ += *gpu_bytes;
+      decoded_.push_back(*size);
+    }
     largest_ = std::max({largest_, size->width, size->height});
   }
   /// `other`: bytes that are no images.
@@ -68,17 +72,28 @@ class Images {
                   "images are %.0f%% of the %s: %s (%s) of %s, at most %u texels a side, about %s on a GPU",
                   100.0 * share, whole, app::counted(count_, "images").c_str(), formats.c_str(),
                   byte_size_text(bytes_).c_str(), largest_, byte_size_text(gpu_bytes_).c_str());
+    const std::uint32_t half = largest_ / 2;
+    std::uint64_t smaller = 0;
+    for (const ImageSize& size : decoded_) {
+      const auto [width, height] = app::fit_size(size.width, size.height, half);
+      smaller += gpu_bytes_of({width, height});
+    }
+    if (half > 0 && smaller < gpu_bytes_) {
+      append_format(place.detail, ", and %s with --textures resize:%u", byte_size_text(smaller).c_str(), half);
+    }
     place.costs.push_back({"bytes", static_cast<double>(bytes_), "asset bytes"});
     app::add_place(diagnoses,
                    words(kHeavyImages, "images, which outweigh the geometry",
-                         "make them smaller, or encode them as KTX2, WebP or JPEG: an asset carries them as they are, "
-                         "and a GPU holds PNG, JPEG and WebP decoded"),
+                         "build with --textures webp, which stores them in fewer bytes, or with --textures resize:N, "
+                         "which a GPU holds in fewer too (KTX2 needs a tool of its own): without it an asset carries "
+                         "them as they are, and a GPU holds PNG, JPEG and WebP decoded"),
                    std::move(place));
   }
 
  private:
   std::uint64_t count_ = 0, bytes_ = 0, gpu_bytes_ = 0;
   std::uint32_t largest_ = 0;
+  std::vector<ImageSize> decoded_;  ///< of those that a GPU holds decoded
   std::vector<std::string> formats_;
 };
 

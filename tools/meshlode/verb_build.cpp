@@ -22,6 +22,7 @@
 #include "app/batch/shard/read_manifest.h"
 #include "app/batch/tell/tell.h"
 #include "app/settings/settings.h"
+#include "app/textures/convert_images.h"
 #include "base/printable.h"
 #include "base/try.h"
 #include "batch_files.h"
@@ -90,6 +91,7 @@ struct BuildCommand {
   std::optional<app::Cache> cache;
   std::optional<std::string> fail_if;
   std::optional<builder::BuildHooks> hooks;  ///< of a study
+  std::optional<app::ImageConverter> converter;
   std::optional<app::ShardPlan> shard;
   bool is_explained = false;
   std::uint32_t jobs = 0;
@@ -258,7 +260,9 @@ struct LimitWords {
   std::vector<std::string> allow_outside;
 };
 
-Status set_options(const BuildWords& words, const LimitWords& limits, app::BatchOptions& options) {
+/// `converter`: of images, which the options refer to.
+Status set_options(const BuildWords& words, const LimitWords& limits, app::BatchOptions& options,
+                   std::optional<app::ImageConverter>& converter) {
   const app::SettingLayer given = given_settings(words);
   TRY_LET(settled, app::settle({&given, 1}));
   options.pipeline = settled->options;
@@ -271,6 +275,8 @@ Status set_options(const BuildWords& words, const LimitWords& limits, app::Batch
   options.pipeline.max_memory = *memory;
   TRY_LET(decoded, parse_max_decoded(limits.max_decoded));
   options.import.max_decoded = *decoded;
+  converter.emplace(*decoded);
+  options.pipeline.images = &*converter;
   TRY_LET(allowed, parse_allow_outside(limits.allow_outside));
   options.import.allow_outside = std::move(*allowed);
   return Ok{};
@@ -319,7 +325,8 @@ int run_command(const Verb& verb, std::span<char* const> args, bool is_study) {
   if (!output.empty() && !output_folder.empty()) {
     return print_error({ErrorCode::kUsage, "", "give -o or -O, not both"});
   }
-  if (const Status set = set_options(words, limits, command.options); !set) return print_error(set.error());
+  if (const Status set = set_options(words, limits, command.options, command.converter); !set)
+    return print_error(set.error());
   auto hooks = hooks_of(study);
   if (!hooks) return print_error(hooks.error());
   command.hooks = std::move(*hooks);

@@ -10,6 +10,7 @@
 #include "app/preview/plan_report.h"
 #include "app/preview/scene_plan.h"
 #include "app/settings/settings.h"
+#include "app/textures/convert_images.h"
 #include "base/json_writer.h"
 #include "base/printable.h"
 #include "build_options.h"
@@ -146,6 +147,8 @@ FileOutcome plan_file(const BulkInput& input, const PlanCommand& command, JobLim
   if (!settled) return fail(settled.error());
   builder::PipelineOptions options = settled->options;
   options.looks = &image_looks();
+  const app::ImageConverter converter(command.max_decoded);
+  options.images = &converter;
 
   std::vector<FileId> files_read;
   const Result<scene::Scene> scene = scene::import_scene(path, {.repair = options.repair,

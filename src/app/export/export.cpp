@@ -193,9 +193,11 @@ Status Exporter::carry_images() {
     TRY_LET(range, carry_blob(record));
     image["bufferView"] = add_view(document_, *range);
     const std::string_view mime_type = asset_.string(record.mime_type);
-    if (!image.contains("mimeType"))
-      image["mimeType"] =
-          mime_type.empty() || mime_type.size() > kLongestName ? sniff_mime_type(bytes) : std::string(mime_type);
+    // The record's is that of the stored bytes; the document has the source's.
+    const bool is_known = !mime_type.empty() && mime_type.size() <= kLongestName;
+    if (is_known || !image.contains("mimeType")) {
+      image["mimeType"] = is_known ? std::string(mime_type) : sniff_mime_type(bytes);
+    }
     const std::string_view name = asset_.string(record.name);
     if (!image.contains("name") && !name.empty() && name.size() <= kLongestName) image["name"] = std::string(name);
     image.erase("blob");

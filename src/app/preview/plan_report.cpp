@@ -64,6 +64,45 @@ void add_more(std::string& out, std::size_t total, const char* what) {
     append_format(out, "  … and %zu more %s (plan --format json lists all)\n", total - kMaxRows, what);
 }
 
+std::string gpu_text(const std::optional<std::uint64_t>& bytes) {
+  return bytes ? byte_size_text(*bytes) + " on a GPU" : "not decoded here";
+}
+
+void add_images(std::string& out, const std::vector<PlannedImage>& images) {
+  if (images.empty()) return;
+  std::uint64_t bytes = 0, gpu = 0, stored_gpu = 0;
+  for (const PlannedImage& image : images) {
+    bytes += image.bytes;
+    gpu += image.gpu_bytes.value_or(0);
+    stored_gpu += image.stored_gpu_bytes.value_or(0);
+  }
+  append_format(out, "images: %s, %s decoded with mip levels on a GPU", byte_size_text(bytes).c_str(),
+                byte_size_text(gpu).c_str());
+  if (stored_gpu != gpu) append_format(out, ", %s as they will be stored", byte_size_text(stored_gpu).c_str());
+  out += "\n";
+  for (std::size_t i = 0; i < images.size() && i < kMaxRows; ++i) {
+    const PlannedImage& image = images[i];
+    append_format(out, "  %u  %s: %s, %ux%u, %s, %s", image.source_index, printable(image.name, 80).c_str(),
+                  printable(image.mime_type, 40).c_str(), image.width, image.height,
+                  byte_size_text(image.bytes).c_str(), gpu_text(image.gpu_bytes).c_str());
+    if (image.stored_gpu_bytes != image.gpu_bytes) {
+      append_format(out, "; stored as %ux%u, %s", image.stored_width, image.stored_height,
+                    gpu_text(image.stored_gpu_bytes).c_str());
+    }
+    out += "\n";
+  }
+  add_more(out, images.size(), "images");
+}
+
+void write_optional_bytes(JsonWriter& json, const char* key, const std::optional<std::uint64_t>& bytes) {
+  json.key(key);
+  if (bytes) {
+    json.value(*bytes);
+  } else {
+    json.null();
+  }
+}
+
 }  // namespace
 
 std::string describe_plan(const ScenePlan& plan) {
@@ -86,6 +125,7 @@ std::string describe_plan(const ScenePlan& plan) {
     append_format(out, "  left out  %s, %zu of %zu meshes: %s%s\n", what.first.c_str(), loss.meshes, plan.meshes.size(),
                   what.second.c_str(), bytes_text(loss.bytes, false).c_str());
   }
+  add_images(out, plan.images);
   append_format(out, "features\n");
   for (std::size_t i = 0; i < plan.features.size() && i < kMaxRows; ++i) {
     add_line(out, plan.features[i].kept, plan.features[i].what, plan.features[i].reason);
@@ -124,6 +164,23 @@ void write_plan(JsonWriter& json, const ScenePlan& plan) {
       json.end_object();
     }
     json.end_array();
+    json.end_object();
+  }
+  json.end_array();
+  json.key("images");
+  json.begin_array();
+  for (const PlannedImage& image : plan.images) {
+    json.begin_object();
+    json.field("name", image.name);
+    json.field("mime_type", image.mime_type);
+    json.field("source_index", image.source_index);
+    json.field("bytes", image.bytes);
+    json.field("width", image.width);
+    json.field("height", image.height);
+    write_optional_bytes(json, "gpu_bytes", image.gpu_bytes);
+    json.field("stored_width", image.stored_width);
+    json.field("stored_height", image.stored_height);
+    write_optional_bytes(json, "stored_gpu_bytes", image.stored_gpu_bytes);
     json.end_object();
   }
   json.end_array();

@@ -6,9 +6,12 @@
 #include <cmath>
 #include <cstdio>
 #include <span>
+#include <tuple>
 #include <utility>
 
 #include "app/preview/estimate.h"
+#include "app/textures/shrink.h"
+#include "base/image_size.h"
 #include "base/parallel.h"
 #include "base/try.h"
 #include "builder/encode/encode.h"
@@ -149,6 +152,28 @@ class MeshPlanner {
   PlannedMesh out_;
 };
 
+std::vector<PlannedImage> plan_images(const scene::Scene& scene, const builder::TextureChoice& choice) {
+  std::vector<PlannedImage> images;
+  for (const scene::SceneBlob& blob : scene.blobs) {
+    if (blob.kind != scene::SceneBlob::Kind::kImage) continue;
+    PlannedImage& image = images.emplace_back();
+    image.name = blob.name;
+    image.mime_type = blob.mime_type;
+    image.source_index = blob.source_index;
+    image.bytes = blob.bytes.size();
+    const auto size = read_image_size(blob.bytes);
+    if (!size) continue;
+    image.width = size->width;
+    image.height = size->height;
+    image.gpu_bytes = find_gpu_bytes(blob.bytes);
+    // What is not decoded keeps its size.
+    const std::uint32_t longest = image.gpu_bytes ? choice.longest_side : 0;
+    std::tie(image.stored_width, image.stored_height) = fit_size(size->width, size->height, longest);
+    if (image.gpu_bytes) image.stored_gpu_bytes = gpu_bytes_of({image.stored_width, image.stored_height});
+  }
+  return images;
+}
+
 }  // namespace
 
 Result<ScenePlan> plan_scene(const scene::Scene& scene, const builder::PipelineOptions& options) {
@@ -161,6 +186,7 @@ Result<ScenePlan> plan_scene(const scene::Scene& scene, const builder::PipelineO
     if (!mesh) return mesh.error();
     plan.meshes.push_back(std::move(*mesh));
   }
+  plan.images = plan_images(scene, options.textures);
   plan.features = builder::list_features(scene);
   const std::vector<builder::AggregateDecision> aggregates = builder::decide_aggregates(scene, options);
   const std::vector<builder::MeshGaps> gaps = builder::find_layers(scene, aggregates, options);

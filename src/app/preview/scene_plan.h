@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,8 +35,19 @@ struct PlannedMesh {
   double bytes = 0.0;                        ///< estimated, of the decoded pages with their topology
 };
 
+/// An image of the scene, and what --textures makes of its size.
+struct PlannedImage {
+  std::string name, mime_type;
+  std::uint32_t source_index = 0;
+  std::uint64_t bytes = 0;
+  std::uint32_t width = 0, height = 0;                       ///< 0: not known
+  std::uint32_t stored_width = 0, stored_height = 0;         ///< the same
+  std::optional<std::uint64_t> gpu_bytes, stored_gpu_bytes;  ///< find_gpu_bytes()
+};
+
 struct ScenePlan {
   std::vector<PlannedMesh> meshes;
+  std::vector<PlannedImage> images;
   std::vector<builder::PlanDecision>
       features;  ///< list_features(), and which meshes are aggregates where that was asked
 };

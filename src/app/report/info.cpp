@@ -2,6 +2,10 @@
 #include "app/report/info.h"
 
 #include <algorithm>
+#include <map>
+#include <span>
+
+#include "base/image_size.h"
 
 namespace meshlode::app {
 
@@ -78,6 +82,36 @@ MeshInfo describe_mesh(const run::Asset& asset, std::uint32_t mesh_id, std::uint
   return info;
 }
 
+/// Sizes that META states are not trusted: as large as an image may be, and sums that wrap around do no harm.
+constexpr std::uint32_t kMostSourceSide = 1U << 20U;
+
+void describe_images(const run::Asset& asset, AssetInfo& info) {
+  std::map<std::uint64_t, const MetaInfo::SourceImage*> sources;
+  for (const MetaInfo::SourceImage& source : info.meta.source_images) sources.emplace(source.blob, &source);
+  for (std::uint32_t i = 0; i < asset.blobs().size(); ++i) {
+    const format::BlobRecord& blob = asset.blobs()[i];
+    if (blob.kind != format::BlobKind::kImage) continue;
+    ImageInfo& image = info.images.emplace_back();
+    image.blob = i;
+    const std::span<const std::uint8_t> bytes = asset.blob_bytes(blob);
+    if (const auto size = read_image_size(bytes)) {
+      image.width = size->width;
+      image.height = size->height;
+    }
+    image.gpu_bytes = find_gpu_bytes(bytes);
+    if (const auto source = sources.find(i); source != sources.end()) {
+      image.source = *source->second;
+      const std::uint32_t width = std::min(image.source->width, kMostSourceSide);
+      const std::uint32_t height = std::min(image.source->height, kMostSourceSide);
+      if (width > 0 && height > 0) image.source_gpu_bytes = gpu_bytes_of({width, height});
+    }
+    info.image_bytes += blob.bytes;
+    info.image_gpu_bytes += image.gpu_bytes.value_or(0);
+    info.source_image_bytes += image.source ? image.source->bytes : blob.bytes;
+    info.source_image_gpu_bytes += image.source ? image.source_gpu_bytes : image.gpu_bytes.value_or(0);
+  }
+}
+
 }  // namespace
 
 AssetInfo describe_asset(const run::Asset& asset) {
@@ -93,9 +127,7 @@ AssetInfo describe_asset(const run::Asset& asset) {
   for (const format::SectionEntry& section : asset.sections()) {
     if (is_geometry(section.id)) info.geometry_bytes += section.bytes;
   }
-  for (const format::BlobRecord& blob : asset.blobs()) {
-    if (blob.kind == format::BlobKind::kImage) info.image_bytes += blob.bytes;
-  }
+  describe_images(asset, info);
   const std::vector<std::size_t> origins = origins_of_meshes(info.meta, asset.meshes().size());
   for (std::uint32_t m = 0; m < asset.meshes().size(); ++m) {
     const format::MeshRecord& mesh = asset.meshes()[m];

@@ -44,10 +44,22 @@ struct MeshInfo {
   std::vector<LevelInfo> levels;
 };
 
+struct ImageInfo {
+  std::uint32_t blob = 0;
+  std::uint32_t width = 0, height = 0;          ///< 0: not known
+  std::optional<std::uint64_t> gpu_bytes;       ///< find_gpu_bytes()
+  std::optional<MetaInfo::SourceImage> source;  ///< where it was converted
+  std::uint64_t source_gpu_bytes = 0;           ///< of `source`
+};
+
 struct AssetInfo {
   MetaInfo meta;
   std::uint64_t geometry_bytes = 0;  ///< pages and the tables they need: meshes, groups, clusters, nodes, pages, deps
   std::uint64_t image_bytes = 0;
+  std::vector<ImageInfo> images;             ///< in the order of the blobs
+  std::uint64_t image_gpu_bytes = 0;         ///< of those that a GPU holds decoded, with mip levels
+  std::uint64_t source_image_bytes = 0;      ///< before --textures; of images that were not converted their own
+  std::uint64_t source_image_gpu_bytes = 0;  ///< the same
   std::uint64_t source_triangles = 0, source_vertices = 0;
   std::uint64_t stored_triangles = 0, stored_vertices = 0;
   std::uint64_t levels = 0, roots = 0, max_roots_per_mesh = 0, stuck_groups = 0;

@@ -64,7 +64,46 @@ void write_materials(JsonWriter& w, const run::Asset& asset) {
   w.end_array();
 }
 
-void write_textures_and_images(JsonWriter& w, const run::Asset& asset) {
+void size_field(JsonWriter& w, const char* key, std::uint32_t side) {
+  w.key(key);
+  if (side > 0) {
+    w.value(side);
+  } else {
+    w.null();
+  }
+}
+
+void write_image(JsonWriter& w, const run::Asset& asset, const ImageInfo& image) {
+  const format::BlobRecord& blob = asset.blobs()[image.blob];
+  w.begin_object();
+  w.field("name", asset.string(blob.name));
+  w.field("mime_type", asset.string(blob.mime_type));
+  w.field("source_index", blob.source_index);
+  w.field("bytes", blob.bytes);
+  size_field(w, "width", image.width);
+  size_field(w, "height", image.height);
+  w.key("gpu_bytes");
+  if (image.gpu_bytes) {
+    w.value(*image.gpu_bytes);
+  } else {
+    w.null();
+  }
+  w.key("source");
+  if (image.source) {
+    w.begin_object();
+    w.field("mime_type", image.source->mime_type);
+    w.field("bytes", image.source->bytes);
+    size_field(w, "width", image.source->width);
+    size_field(w, "height", image.source->height);
+    w.field("gpu_bytes", image.source_gpu_bytes);
+    w.end_object();
+  } else {
+    w.null();
+  }
+  w.end_object();
+}
+
+void write_textures_and_images(JsonWriter& w, const run::Asset& asset, const AssetInfo& info) {
   w.key("textures");
   w.begin_array();
   for (const TextureInfo& texture : read_textures(asset.scene_json())) {
@@ -77,15 +116,7 @@ void write_textures_and_images(JsonWriter& w, const run::Asset& asset) {
   w.end_array();
   w.key("images");
   w.begin_array();
-  for (const format::BlobRecord& blob : asset.blobs()) {
-    if (blob.kind != format::BlobKind::kImage) continue;
-    w.begin_object();
-    w.field("name", asset.string(blob.name));
-    w.field("mime_type", asset.string(blob.mime_type));
-    w.field("source_index", blob.source_index);
-    w.field("bytes", blob.bytes);
-    w.end_object();
-  }
+  for (const ImageInfo& image : info.images) write_image(w, asset, image);
   w.end_array();
 }
 
@@ -256,6 +287,9 @@ std::string info_json(const run::Asset& asset, const AssetInfo& info, bool list_
   w.field("file_bytes", header.file_bytes);
   w.field("geometry_bytes", info.geometry_bytes);
   w.field("image_bytes", info.image_bytes);
+  w.field("image_gpu_bytes", info.image_gpu_bytes);
+  w.field("source_image_bytes", info.source_image_bytes);
+  w.field("source_image_gpu_bytes", info.source_image_gpu_bytes);
   w.field("generator", meta.generator);
   w.key("source");
   w.begin_object();
@@ -276,7 +310,7 @@ std::string info_json(const run::Asset& asset, const AssetInfo& info, bool list_
   w.key("plan");
   w.raw(meta.plan);
   write_materials(w, asset);
-  write_textures_and_images(w, asset);
+  write_textures_and_images(w, asset, info);
   write_instances(w, asset);
   w.key("meshes");
   w.begin_array();

@@ -112,6 +112,25 @@ void add_materials(std::string& out, const run::Asset& asset) {
   add_more(out, asset.materials().size(), "materials");
 }
 
+void add_image_list(std::string& out, const run::Asset& asset, const AssetInfo& info) {
+  if (info.images.empty()) return;
+  append_format(out, "\nimages\n");
+  for (std::size_t i = 0; i < info.images.size() && i < kMaxRows; ++i) {
+    const ImageInfo& image = info.images[i];
+    const format::BlobRecord& blob = asset.blobs()[image.blob];
+    append_format(out, "  %3u  %s: %s, %ux%u, %s bytes", blob.source_index,
+                  printable(asset.string(blob.name), 80).c_str(), printable(asset.string(blob.mime_type), 40).c_str(),
+                  image.width, image.height, grouped_digits(blob.bytes).c_str());
+    if (image.gpu_bytes) append_format(out, ", %s on a GPU", grouped_digits(*image.gpu_bytes).c_str());
+    if (image.source) {
+      append_format(out, "; was %s, %ux%u, %s bytes", printable(image.source->mime_type, 40).c_str(),
+                    image.source->width, image.source->height, grouped_digits(image.source->bytes).c_str());
+    }
+    out += "\n";
+  }
+  add_more(out, info.images.size(), "images");
+}
+
 void append_sections(std::string& out, const run::Asset& asset) {
   append_format(out, "\nsections        bytes     decoded\n");
   for (const format::SectionEntry& section : asset.sections()) {
@@ -136,6 +155,7 @@ std::string info_text(const run::Asset& asset, const AssetInfo& info, bool list_
   if (has_bars) out += "  (the bar of an error is half as long for a quarter of it)\n";
   if (list_stuck) add_stuck(out, info);
   add_materials(out, asset);
+  add_image_list(out, asset, info);
   if (info.byte_map) add_byte_map(out, *info.byte_map, info);
   append_sections(out, asset);
   return out;

@@ -2,6 +2,7 @@
 // nlohmann-json, seen by this file alone in this room.
 #include "app/report/read_meta.h"
 
+#include <algorithm>
 #include <limits>
 #include <numeric>
 #include <optional>
@@ -95,6 +96,17 @@ MetaInfo read_meta(std::string_view meta_json) {
     for (const Json& entry : *parts) {
       const auto mesh = TreeHandle(entry).find("mesh").index(), of = TreeHandle(entry).find("of").index();
       if (mesh && of) meta.parts.push_back({*mesh, *of});
+    }
+  }
+  if (const Json* images = child(json, "source_images", Json::value_t::array)) {
+    for (const Json& entry : *images) {
+      const auto number = [&](const char* key) { return TreeHandle(entry).find(key).index(); };
+      const auto side = [&](const char* key) {
+        return static_cast<std::uint32_t>(std::min<std::uint64_t>(number(key).value_or(0), 0xFFFFFFFFU));
+      };
+      const auto blob = number("blob"), bytes = number("bytes");
+      if (!blob || !bytes) continue;
+      meta.source_images.push_back({*blob, *bytes, side("width"), side("height"), string_at(entry, "mime_type")});
     }
   }
   if (const Json* plan = child(json, "plan", Json::value_t::array)) {

@@ -22,6 +22,12 @@ struct MetaInfo {
   struct Part {
     std::uint64_t mesh = 0, of = 0;
   };
+  /// What the source had in the place of an image that --textures converted.
+  struct SourceImage {
+    std::uint64_t blob = 0, bytes = 0;
+    std::uint32_t width = 0, height = 0;
+    std::string mime_type;
+  };
   bool is_valid = false;  ///< false: not JSON, or not an object; everything below is then as here
   std::string generator, source_file, source_hash;
   std::string settings = "{}";             ///< JSON object
@@ -32,6 +38,7 @@ struct MetaInfo {
   std::vector<Decision> decisions;         ///< of `plan`, for text
   std::vector<LeftOut> left_outs;          ///< of `left_out`, for text
   std::vector<Part> parts;                 ///< as many as can be read
+  std::vector<SourceImage> source_images;  ///< the same
   std::uint32_t cluster_triangles = 0;     ///< of the settings; 0 where it is not said
   bool repair = false;                     ///< of the settings: the source was repaired
   bool linear_colors = false;              ///< the same: colour levels were taken as linear

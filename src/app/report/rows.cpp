@@ -26,6 +26,15 @@ void add_file_rows(std::vector<Row>& rows, const run::Asset& asset, const AssetI
   if (!meta.preset.empty() && meta.preset != "default") rows.push_back({"preset", printable(meta.preset)});
   rows.push_back({"bytes", grouped_digits(header.file_bytes) + ": geometry " + grouped_digits(info.geometry_bytes) +
                                ", images " + grouped_digits(info.image_bytes)});
+  if (!info.images.empty()) {
+    const auto on_gpu = [](std::uint64_t bytes) { return ", " + grouped_digits(bytes) + " decoded on a GPU"; };
+    std::string text =
+        std::to_string(info.images.size()) + ": " + grouped_digits(info.image_bytes) + on_gpu(info.image_gpu_bytes);
+    if (!info.meta.source_images.empty()) {
+      text += "; in the source " + grouped_digits(info.source_image_bytes) + on_gpu(info.source_image_gpu_bytes);
+    }
+    rows.push_back({"images", text});
+  }
   if (info.source_triangles > 0) {
     std::string text;
     append_format(text, "%.2f geometry bytes per source triangle",

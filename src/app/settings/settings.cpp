@@ -88,6 +88,10 @@ constexpr std::array<SettingInfo, kSettingCount> kSettings{{
      "level", false},
     {Setting::kRootBytes, "root-bytes", " auto|N", "Output",
      "limit of each mesh's first page in bytes, 16384 to 131072; auto: as --page-size", "auto", false},
+    {Setting::kTextures, "textures", " keep|resize:N|webp[:Q]", "Output",
+     "images: keep, as they are; resize:N, at most N texels along the longer side; webp, colours at quality Q, 1 to "
+     "100 (90), all else without loss; or two, as in resize:1024,webp",
+     "keep", false},
 }};
 
 struct UseWord {
@@ -290,6 +294,7 @@ builder::PipelineOptions options_of(const std::array<SettledWord, kSettingCount>
   if (options.aggregate == AggregateChoice::kNamed) options.aggregate_names = word(Setting::kAggregate);
   options.promise = value_in(format::kPromiseNames, word(Setting::kPromise)).value_or(options.promise);
   options.keep_layers = word(Setting::kKeepLayers) == "on";
+  options.textures = builder::parse_texture_choice(word(Setting::kTextures)).value_or(options.textures);
   return options;
 }
 
@@ -372,6 +377,10 @@ std::string find_fault(Setting setting, std::string_view word) {
     case Setting::kGroupClusters:
       return parse_group_clusters(word) ? "" : wanted("a whole number of clusters from 4 to 32", word);
     case Setting::kNormalError: return parse_angle(word) ? "" : wanted("an angle above 0 and up to 180 degrees", word);
+    case Setting::kTextures:
+      return builder::parse_texture_choice(word)
+                 ? ""
+                 : wanted("keep, resize:N (1 to 16384), webp, webp:Q (1 to 100) or resize:N,webp:Q", word);
     case Setting::kRootBytes:
       return word == "auto" || parse_root_bytes(word) ? "" : wanted("auto or 16384 to 131072 bytes", word);
     case Setting::kUvError:

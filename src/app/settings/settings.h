@@ -49,8 +49,9 @@ enum class Setting : std::uint8_t {
   kPageSize,
   kPageOrder,
   kRootBytes,
+  kTextures,
 };
-constexpr std::size_t kSettingCount = 24;
+constexpr std::size_t kSettingCount = 25;
 
 struct SettingInfo {
   Setting setting;

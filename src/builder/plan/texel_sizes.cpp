@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "builder/plan/image_size.h"
+#include "base/image_size.h"
 
 namespace meshlode::builder {
 

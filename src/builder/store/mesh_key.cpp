@@ -105,7 +105,7 @@ void add_own_options(KeyHasher& key, const MeshOptions& own) {
 void add_scene_options(KeyHasher& key, const SceneOptions& options) {
   const auto& [preset, codec, strip_effort, partition_seed, repair, linear_colors, promise, keep_topology, keep_layers,
                max_cluster_triangles, max_cluster_vertices, group_clusters, page_kib, page_order, root_bytes,
-               max_memory, mesh_store, looks, hooks, mesh_options] = options;
+               max_memory, mesh_store, looks, textures, images, hooks, mesh_options] = options;
   key.value(preset);
   key.value(partition_seed);
   key.value(max_cluster_triangles);
@@ -125,7 +125,9 @@ void add_scene_options(KeyHasher& key, const SceneOptions& options) {
   static_cast<void>(linear_colors);  // the same
   static_cast<void>(max_memory);
   static_cast<void>(mesh_store);
-  static_cast<void>(looks);         // of aggregates, which are not stored
+  static_cast<void>(looks);     // of aggregates, which are not stored
+  static_cast<void>(textures);  // no mesh has images
+  static_cast<void>(images);
   static_cast<void>(mesh_options);  // this mesh's are its own
 }
 

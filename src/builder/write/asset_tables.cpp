@@ -165,7 +165,7 @@ Result<AssetTables> make_tables(WriteInput& input) {
   for (const scene::SceneInstance& instance : input.scene->instances) {
     out.instances.push_back(instance_record(instance, out.strings));
   }
-  for (const scene::SceneBlob& blob : input.scene->blobs) out.blobs.push_back(blob_record(blob, out.strings));
+  for (const scene::SceneBlob& blob : input.all_blobs()) out.blobs.push_back(blob_record(blob, out.strings));
   parallel_for_each_index(out.pages.size(), 4,
                           [&](std::size_t p) { out.pages[p].decoded_checksum = hash64(out.page_bytes[p]); });
   if (out.strings.bytes().size() >= std::numeric_limits<std::uint32_t>::max()) {

@@ -128,8 +128,7 @@ void copy_pages_and_blobs(const AssetTables& tables, const std::vector<PackedPag
 Result<std::vector<std::uint8_t>> write_asset(WriteInput input) {
   TRY_LET(made, make_tables(input));
   AssetTables tables = std::move(*made);
-  const scene::Scene& scene = *input.scene;
-  const Hash128 content_hash = hash_content(tables, input.whole_document(), scene.blobs, input.promises != 0);
+  const Hash128 content_hash = hash_content(tables, input.whole_document(), input.all_blobs(), input.promises != 0);
   TRY_LET(packed, pack_pages(tables, input.codec));
   const std::uint64_t page_data_bytes = place_pages(tables, *packed);
   const std::uint64_t blob_data_bytes = place_blobs(tables);
@@ -140,7 +139,7 @@ Result<std::vector<std::uint8_t>> write_asset(WriteInput input) {
   std::vector<std::uint8_t> file(place_sections(plans, entries));
   move_to_sections(entries, tables);
   copy_sections(plans, entries, file);
-  copy_pages_and_blobs(tables, *packed, scene.blobs, file);
+  copy_pages_and_blobs(tables, *packed, input.all_blobs(), file);
   seal(version_of(tables), content_hash, plans, entries, file);
   return file;
 }

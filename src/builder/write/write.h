@@ -18,13 +18,17 @@ namespace meshlode::builder {
 struct WriteInput {
   std::vector<EncodedMesh> meshes;
   std::vector<std::string> mesh_names;
-  const scene::Scene* scene = nullptr;  ///< instances and blobs; materials and document where there are none below
+  const scene::Scene* scene = nullptr;  ///< instances; blobs, materials and document where there are none below
+  const std::vector<scene::SceneBlob>* blobs = nullptr;          ///< with images as they are stored
   const std::vector<scene::SceneMaterial>* materials = nullptr;  ///< with those that the build derived
   const std::string* document = nullptr;                         ///< with these
   std::string meta_json;                                         ///< kMeta, already serialised
   format::Codec codec = format::Codec::kNone;
   std::uint32_t promises = 0;  ///< format::kPromises…: what the meshes have errors for; 0: no section says so
 
+  [[nodiscard]] const std::vector<scene::SceneBlob>& all_blobs() const {
+    return blobs != nullptr ? *blobs : scene->blobs;
+  }
   [[nodiscard]] const std::vector<scene::SceneMaterial>& all_materials() const {
     return materials != nullptr ? *materials : scene->materials;
   }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Pixels of PNG, JPEG and WebP files, for who draws textures. The build never looks at a pixel.
+// Pixels of PNG, JPEG and WebP files, for who draws textures or makes them smaller (app/textures). The builder itself
+// never looks at a pixel.
 #pragma once
 
 #include <cstdint>

@@ -35,6 +35,7 @@ struct MetaFacts {
   std::string source_hash;
   std::optional<std::uint64_t> cluster_triangles, cluster_vertices;  ///< settings
   std::optional<double> error_margin;                                ///< settings
+  std::string textures;                                              ///< settings: how images were made; empty: kept
   bool keeps_topology = false;                                       ///< settings
   OfMesh whole;                                                      ///< settings
   std::vector<OfMesh> apart;                                         ///< settings/mesh_settings …

@@ -120,7 +120,7 @@ constexpr std::array kRules{
     RULE(V106, "", "materials are the source's"),
     RULE(V107, "", "instances are the source's, and their transforms"),
     RULE(V108, "", "the source hash in META is the source's"),
-    RULE(V109, "", "images and buffers are the source's bytes"),
+    RULE(V109, "", "images and buffers are the source's bytes, or images what the settings make of them"),
     RULE(V110, "",
          "normals, UV sets and colours that the source's shading needs are stored, unless left out by option"),
     RULE(V111, "I2", "clusters keep the caps of the settings"),

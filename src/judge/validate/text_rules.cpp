@@ -103,6 +103,7 @@ MetaFacts facts_of(const nlohmann::json& meta) {
   facts.cluster_vertices = number_at(settings, "cluster_vertices");
   facts.error_margin = real_at(settings, "error_margin");
   facts.keeps_topology = value_at(settings, "keep_topology") == true;
+  facts.textures = text_at(settings, "textures");
   for (const nlohmann::json& apart : value_at(settings, "mesh_settings")) {
     for (const nlohmann::json& mesh : value_at(apart, "meshes")) {
       if (mesh.is_number_unsigned()) facts.apart_of_mesh[mesh.get<std::uint64_t>()] = facts.apart.size();

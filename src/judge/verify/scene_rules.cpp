@@ -12,6 +12,7 @@
 #include "format/grid.h"
 #include "format/names.h"
 #include "judge/validate/file_tables.h"
+#include "judge/verify/converted_images.h"
 #include "judge/verify/source_rules.h"
 #include "judge/verify/texel_budget.h"
 
@@ -115,7 +116,7 @@ void check_instances(const run::Asset& asset, const scene::Scene& source, RuleLo
   }
 }
 
-void check_blobs(const run::Asset& asset, const scene::Scene& source, RuleLog& log) {
+void check_blobs(const run::Asset& asset, const scene::Scene& source, const StatedTextures& textures, RuleLog& log) {
   log.expect(
       asset.blobs().size() == source.blobs.size(), Rule::kV109, [] { return std::string("blobs"); },
       [&] {
@@ -128,11 +129,17 @@ void check_blobs(const run::Asset& asset, const scene::Scene& source, RuleLog& l
     const auto kind =
         blob.kind == scene::SceneBlob::Kind::kImage ? format::BlobKind::kImage : format::BlobKind::kBuffer;
     const auto bytes = asset.blob_bytes(stored);
-    const bool same = stored.kind == kind && stored.source_index == blob.source_index &&
-                      asset.string(stored.name) == blob.name && asset.string(stored.mime_type) == blob.mime_type &&
+    const std::string_view mime_type = asset.string(stored.mime_type);
+    const bool is_named =
+        stored.kind == kind && stored.source_index == blob.source_index && asset.string(stored.name) == blob.name;
+    const bool same = is_named && mime_type == blob.mime_type &&
                       std::equal(bytes.begin(), bytes.end(), blob.bytes.begin(), blob.bytes.end());
+    std::string fault = same ? "" : "is not the source's";
+    if (!same && is_named && kind == format::BlobKind::kImage && textures.is_any()) {
+      fault = find_image_fault(bytes, mime_type, blob, textures);
+    }
     log.expect(
-        same, Rule::kV109, [&] { return place("blob", i); }, [] { return std::string("is not the source's"); });
+        fault.empty(), Rule::kV109, [&] { return place("blob", i); }, [&] { return fault; });
   }
   log.expect(
       is_same_document(asset, source), Rule::kV109, [] { return std::string("section SCNE"); },
@@ -278,9 +285,9 @@ void check_scene(const run::Asset& asset, const scene::Scene& source, std::span<
                  RuleLog& log) {
   check_materials(asset, source, log);
   check_instances(asset, source, log);
-  check_blobs(asset, source, log);
-  log.check(Rule::kV110);
   const MetaFacts facts = read_meta_facts(asset.meta_json());
+  check_blobs(asset, source, read_stated_textures(facts.textures), log);
+  log.check(Rule::kV110);
   check_attributes(asset, facts, source, log);
   check_caps(asset, facts, log);
   check_tiers(asset, facts, log);

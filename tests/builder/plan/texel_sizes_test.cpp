@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-#include "builder/plan/image_size.h"
+#include "base/image_size.h"
 #include "scene/import/import.h"
 
 namespace meshlode::builder {

@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "builder/plan/image_size.h"
+#include "base/image_size.h"
 #include "builder/plan/texel_sizes.h"
 #include "judge/validate/judged_sample.h"
 #include "judge/verify/texel_budget.h"
@@ -94,7 +94,7 @@ TEST(TexelBudget, KtxAndWebpStateTheirSizeToBothReaders) {
         bytes[random() % bytes.size()] ^= static_cast<std::uint8_t>(1 + random() % 255);
       if (round % 5 == 4) bytes.resize(random() % bytes.size());
       const auto judged = stated_image_size(bytes);
-      const auto built = builder::read_image_size(bytes);
+      const auto built = read_image_size(bytes);
       ASSERT_EQ(judged.has_value(), built.has_value()) << "round " << round;
       if (!built) continue;
       ASSERT_EQ(judged->first, built->width) << "round " << round;

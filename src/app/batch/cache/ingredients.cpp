@@ -88,12 +88,14 @@ std::string settings_text(const builder::PipelineOptions& options, const scene::
       static_cast<const builder::MeshOptions&>(options);
   const auto& [preset, codec, strip_effort, partition_seed, repair, linear_colors, promise, keep_topology, keep_layers,
                max_cluster_triangles, max_cluster_vertices, group_clusters, page_kib, page_order, root_bytes,
-               max_memory, mesh_store, looks, hooks, mesh_options] = static_cast<const builder::SceneOptions&>(options);
+               max_memory, mesh_store, looks, textures, images, hooks, mesh_options] =
+      static_cast<const builder::SceneOptions&>(options);
   const auto& [import_repair, scene, files_read, max_decoded, may_lack_images, allow_outside, import_linear] = import;
   static_cast<void>(mesh_options);     // not known before the import: mesh_rules_text()
   static_cast<void>(max_memory);       // whether, not what
   static_cast<void>(mesh_store);       // how soon
   static_cast<void>(looks);            // the program always has it; images are ingredients
+  static_cast<void>(images);           // the same
   static_cast<void>(max_decoded);      // the same
   static_cast<void>(may_lack_images);  // the same: a missing image is an ingredient of its own
   static_cast<void>(allow_outside);    // the same: a file that may not be opened is a missing one
@@ -123,6 +125,7 @@ std::string settings_text(const builder::PipelineOptions& options, const scene::
       {"page-size", text_of(std::uint64_t{page_kib})},
       {"page-order", builder::name_of(page_order)},
       {"root-bytes", text_of(std::uint64_t{root_bytes})},
+      {"textures", builder::texture_word(textures)},
       {"study", hooks != nullptr ? hooks->record : "none"},
       {"position-error", text_of(position_error)},
       {"normal-error", text_of(normal_error)},

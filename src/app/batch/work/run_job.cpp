@@ -118,6 +118,7 @@ class Run {
     result_.settings = effective_settings(*settled, layers_);
     settled->options.max_memory = pipeline_.max_memory;
     settled->options.looks = pipeline_.looks;
+    settled->options.images = pipeline_.images;
     settled->options.hooks = pipeline_.hooks;
     pipeline_ = std::move(settled->options);
     import_.repair = pipeline_.repair;

@@ -1,11 +1,11 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
-#include "builder/plan/image_size.h"
+// SPDX-License-Identifier: MIT
+#include "base/image_size.h"
 
 #include <algorithm>
 #include <array>
 #include <string_view>
 
-namespace meshlode::builder {
+namespace meshlode {
 
 namespace {
 
@@ -107,4 +107,20 @@ std::optional<ImageSize> read_image_size(std::span<const std::uint8_t> bytes) {
   return read_webp(bytes);
 }
 
-}  // namespace meshlode::builder
+std::uint64_t gpu_bytes_of(const ImageSize& size) {
+  std::uint64_t bytes = 0, width = size.width, height = size.height;
+  while (true) {
+    bytes += 4 * width * height;
+    if (width <= 1 && height <= 1) return bytes;
+    width = std::max<std::uint64_t>(1, width / 2);
+    height = std::max<std::uint64_t>(1, height / 2);
+  }
+}
+
+std::optional<std::uint64_t> find_gpu_bytes(std::span<const std::uint8_t> image) {
+  const auto size = read_image_size(image);
+  if (!size || read_ktx2(image)) return std::nullopt;
+  return gpu_bytes_of(*size);
+}
+
+}  // namespace meshlode

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/textures/convert_images.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "app/textures/encode.h"
+#include "app/textures/shrink.h"
+#include "base/append_format.h"
+#include "base/byte_size.h"
+#include "base/parallel.h"
+#include "base/try.h"
+#include "draw/textures/image.h"
+
+namespace meshlode::app {
+
+namespace {
+
+/// Of a JPEG that stays one, as other programs save them when they are asked for high quality.
+constexpr int kJpegQuality = 90;
+
+enum class FileKind : std::uint8_t { kPng, kJpeg, kWebp };
+constexpr std::array<const char*, 3> kMimeTypes{"image/png", "image/jpeg", "image/webp"};
+constexpr std::array<const char*, 3> kNames{"PNG", "JPEG", "WebP"};
+
+/// Of bytes that are decoded: \pre read_image_header() takes them
+FileKind kind_of(std::span<const std::uint8_t> bytes) {
+  return bytes[0] == 0xFF ? FileKind::kJpeg : bytes[0] == 'R' ? FileKind::kWebp : FileKind::kPng;
+}
+
+/// By what samples each blob. An image that is both a colour and something else is a colour.
+std::vector<TexelKind> texel_kinds(const scene::Scene& scene) {
+  struct Uses {
+    bool is_color = false, is_normal = false, is_data = false;
+  };
+  std::vector<Uses> uses(scene.blobs.size());
+  for (const scene::SceneMaterial& material : scene.materials) {
+    for (const scene::TextureUse& use : material.textures) {
+      if (use.blob >= uses.size()) continue;
+      Uses& of = uses[use.blob];
+      const bool is_color =
+          use.role == scene::TextureRole::kBaseColor || use.role == scene::TextureRole::kEmissive;
+      of.is_color = of.is_color || is_color;
+      of.is_normal = of.is_normal || use.role == scene::TextureRole::kNormal;
+      of.is_data = of.is_data || (!is_color && use.role != scene::TextureRole::kNormal);
+    }
+  }
+  std::vector<TexelKind> kinds;
+  for (const Uses& of : uses) {
+    kinds.push_back(of.is_color                    ? TexelKind::kColor
+                    : of.is_normal && !of.is_data ? TexelKind::kNormal
+                                                   : TexelKind::kData);
+  }
+  return kinds;
+}
+
+/// What is to be done with one image, from its head alone.
+struct ImageTask {
+  std::size_t blob = 0;
+  FileKind kind{};
+  std::uint32_t width = 0, height = 0;  ///< afterwards
+  bool is_smaller = false;
+  std::uint64_t bytes = 0;  ///< that the work takes
+};
+
+struct EncodedImage {
+  std::vector<std::uint8_t> bytes;
+  FileKind kind{};
+};
+
+/// The smallest of what the choice allows.
+Result<EncodedImage> encode_smallest(const draw::DecodedImage& image, const ImageTask& task, TexelKind texels,
+                                     const builder::TextureChoice& choice) {
+  EncodedImage best;
+  const auto take = [&](std::vector<std::uint8_t> bytes, FileKind kind) {
+    if (best.bytes.empty() || bytes.size() < best.bytes.size()) best = {std::move(bytes), kind};
+  };
+  const bool has_webp = choice.webp_quality != 0 || task.kind == FileKind::kWebp;
+  if (has_webp) {
+    const std::uint32_t quality = choice.webp_quality != 0 ? choice.webp_quality : builder::kUsualWebpQuality;
+    TRY_LET(webp, encode_webp_file(image, texels == TexelKind::kColor ? quality : 0));
+    take(std::move(*webp), FileKind::kWebp);
+  }
+  // Of what was lossy before, lossless data is no smaller: it may stay what it was.
+  if (task.is_smaller && task.kind == FileKind::kJpeg && (!has_webp || texels != TexelKind::kColor)) {
+    TRY_LET(jpeg, encode_jpeg_file(image, kJpegQuality));
+    take(std::move(*jpeg), FileKind::kJpeg);
+  }
+  if (task.kind == FileKind::kPng && !has_webp) {
+    TRY_LET(png, encode_png_file(image));
+    take(std::move(*png), FileKind::kPng);
+  }
+  return best;
+}
+
+std::string describe_image(FileKind kind, std::uint32_t width, std::uint32_t height, std::uint64_t bytes) {
+  std::string text;
+  append_format(text, "%s of %ux%u, %s", kNames[static_cast<std::size_t>(kind)], width, height,
+                byte_size_text(bytes).c_str());
+  return text;
+}
+
+Result<builder::ConvertedImage> convert_one(const scene::SceneBlob& blob, const ImageTask& task, TexelKind texels,
+                                            const builder::TextureChoice& choice) {
+  builder::ConvertedImage out;
+  Result<draw::DecodedImage> decoded = draw::decode_image(blob.bytes);
+  if (!decoded) {
+    out.note = "stays as it is: " + decoded.error().detail;
+    return out;
+  }
+  const std::string before = describe_image(task.kind, decoded->width, decoded->height, blob.bytes.size());
+  if (task.is_smaller) *decoded = shrink(*decoded, task.width, task.height, texels);
+  TRY_LET(best, encode_smallest(*decoded, task, texels, choice));
+  if (!task.is_smaller && best->bytes.size() >= blob.bytes.size()) {
+    out.note = "stays as it is: " + before + ", and WebP would not be smaller";
+    return out;
+  }
+  out.note = before + ", is stored as " + describe_image(best->kind, task.width, task.height, best->bytes.size());
+  out.bytes = std::move(best->bytes);
+  out.mime_type = kMimeTypes[static_cast<std::size_t>(best->kind)];
+  return out;
+}
+
+}  // namespace
+
+Result<std::vector<builder::ConvertedImage>> ImageConverter::convert(const scene::Scene& scene,
+                                                                     const builder::TextureChoice& choice) const {
+  const std::vector<TexelKind> kinds = texel_kinds(scene);
+  std::vector<builder::ConvertedImage> out(scene.blobs.size());
+  std::vector<ImageTask> tasks;
+  std::uint64_t largest = 1;
+  for (std::size_t i = 0; i < scene.blobs.size(); ++i) {
+    const scene::SceneBlob& blob = scene.blobs[i];
+    if (blob.kind != scene::SceneBlob::Kind::kImage) continue;
+    const auto header = draw::read_image_header(blob.bytes);
+    if (!header) {
+      out[i].note = "stays as it is: " + header.error().detail;
+      continue;
+    }
+    ImageTask task{i, kind_of(blob.bytes), 0, 0, false, 0};
+    std::tie(task.width, task.height) = fit_size(header->width, header->height, choice.longest_side);
+    task.is_smaller = task.width != header->width || task.height != header->height;
+    const bool becomes_webp = choice.webp_quality != 0 && task.kind != FileKind::kWebp;
+    if (!task.is_smaller && !becomes_webp) continue;
+    if (choice.webp_quality != 0 && std::max(task.width, task.height) > kMostWebpSide) {
+      out[i].note = "stays as it is: WebP has at most 16383 texels a side";
+      continue;
+    }
+    // The texels, what decodes them, and up to four times as much where they are encoded: libwebp's planes and hashes.
+    const std::uint64_t texels = std::uint64_t{4} * header->width * header->height;
+    task.bytes = texels + std::max(header->decoder_bytes, std::uint64_t{16} * task.width * task.height);
+    if (task.bytes > max_decoded_) {
+      return Error{ErrorCode::kUnsupported, "image " + std::to_string(blob.source_index),
+                   "to convert it takes " + byte_size_text(task.bytes) + ", and --max-decoded allows " +
+                       byte_size_text(max_decoded_)};
+    }
+    largest = std::max(largest, task.bytes);
+    tasks.push_back(task);
+  }
+  std::vector<std::optional<Error>> errors(tasks.size());
+  const std::size_t at_once = std::max<std::size_t>(1, std::min<std::uint64_t>(thread_limit(), max_decoded_ / largest));
+  parallel_for_each_in_order(tasks.size(), at_once, [&](std::size_t i) {
+    const std::size_t blob = tasks[i].blob;
+    auto converted = convert_one(scene.blobs[blob], tasks[i], kinds[blob], choice);
+    if (converted) {
+      out[blob] = std::move(*converted);
+    } else {
+      errors[i] = converted.error();
+    }
+  });
+  for (std::optional<Error>& error : errors) {
+    if (error) return std::move(*error);
+  }
+  return out;
+}
+
+}  // namespace meshlode::app

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/textures/convert_images.h"
+
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <random>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include "../../draw/textures/image_samples.h"
+#include "draw/textures/image.h"
+
+namespace meshlode::app {
+namespace {
+
+constexpr std::uint64_t kPlenty = std::uint64_t{1} << 30U;
+
+/// Smooth in red, noise in green, so that lossy and lossless differ.
+std::vector<std::uint8_t> pixels_of(std::uint32_t side, int channels) {
+  std::mt19937 random(3);
+  std::vector<std::uint8_t> pixels;
+  for (std::uint32_t i = 0; i < side * side; ++i) {
+    const std::uint8_t texel[] = {static_cast<std::uint8_t>(255 * (i % side) / side),
+                                  static_cast<std::uint8_t>(random() % 64), static_cast<std::uint8_t>(i / side % 256),
+                                  255};
+    pixels.insert(pixels.end(), texel, texel + channels);
+  }
+  return pixels;
+}
+
+std::vector<std::uint8_t> png(std::uint32_t side) {
+  return test::make_png(side, side, {2, 8}, pixels_of(side, 3));
+}
+
+scene::Scene scene_of(std::vector<std::vector<std::uint8_t>> images, const std::vector<scene::TextureRole>& roles) {
+  scene::Scene scene;
+  scene::SceneMaterial& material = scene.materials.emplace_back();
+  for (std::uint32_t i = 0; i < images.size(); ++i) {
+    scene.blobs.push_back({scene::SceneBlob::Kind::kImage, "image", "image/png", i, std::move(images[i])});
+    if (i >= roles.size()) continue;
+    scene::TextureUse use;
+    use.role = roles[i];
+    use.blob = i;
+    material.textures.push_back(use);
+  }
+  return scene;
+}
+
+builder::TextureChoice choice_of(const char* words) {
+  return *builder::parse_texture_choice(words);
+}
+
+double psnr(const draw::DecodedImage& a, const draw::DecodedImage& b) {
+  double squares = 0.0;
+  for (std::size_t i = 0; i < a.rgba().size(); ++i) {
+    const int d = int{a.rgba()[i]} - int{b.rgba()[i]};
+    squares += d * d;
+  }
+  return squares == 0.0 ? INFINITY : 10.0 * std::log10(255.0 * 255.0 * static_cast<double>(a.rgba().size()) / squares);
+}
+
+TEST(ConvertImages, ColoursAreLossyAndAllElseIsNot) {
+  using scene::TextureRole;
+  const auto scene = scene_of({png(64), png(64), png(64), png(64)},
+                              {TextureRole::kBaseColor, TextureRole::kNormal, TextureRole::kMetallicRoughness});
+  const auto images = ImageConverter(kPlenty).convert(scene, choice_of("webp"));
+  ASSERT_TRUE(images);
+  const auto source = draw::decode_image(scene.blobs[0].bytes);
+  for (std::size_t i = 0; i < images->size(); ++i) {
+    ASSERT_FALSE((*images)[i].bytes.empty()) << (*images)[i].note;
+    EXPECT_EQ((*images)[i].mime_type, "image/webp");
+    EXPECT_LT((*images)[i].bytes.size(), scene.blobs[i].bytes.size());
+    const auto decoded = draw::decode_image((*images)[i].bytes);
+    ASSERT_TRUE(decoded);
+    EXPECT_EQ(std::isinf(psnr(*decoded, *source)), i > 0) << "the fourth is sampled by nothing";
+    EXPECT_GT(psnr(*decoded, *source), 25.0);
+  }
+}
+
+TEST(ConvertImages, FewerTexelsKeepTheFormat) {
+  const auto jpeg = test::make_jpeg(64, 64, 3, false, pixels_of(64, 3));
+  const auto webp = test::make_webp(64, 64, true, pixels_of(64, 4));
+  const auto scene = scene_of({png(64), jpeg, webp, png(16)}, {scene::TextureRole::kBaseColor});
+  const auto images = ImageConverter(kPlenty).convert(scene, choice_of("resize:16"));
+  ASSERT_TRUE(images);
+  const char* const types[] = {"image/png", "image/jpeg", "image/webp"};
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ((*images)[i].mime_type, types[i]);
+    const auto header = draw::read_image_header((*images)[i].bytes);
+    ASSERT_TRUE(header);
+    EXPECT_EQ(header->width, 16U);
+    EXPECT_EQ(header->height, 16U);
+  }
+  EXPECT_TRUE((*images)[3].bytes.empty()) << "it is small enough";
+  EXPECT_EQ((*images)[3].note, "");
+}
+
+TEST(ConvertImages, WhatCannotBeDecodedStaysAndIsNamed) {
+  std::vector<std::uint8_t> cut = png(64);
+  cut.resize(cut.size() / 2);
+  const std::vector<std::uint8_t> ktx2{0xAB, 'K', 'T', 'X', ' ', '2', '0', 0xBB, '\r', '\n', 0x1A, '\n', 0, 0, 0, 0};
+  const auto images = ImageConverter(kPlenty).convert(scene_of({cut, ktx2, {}, {'x'}}, {}), choice_of("webp"));
+  ASSERT_TRUE(images);
+  const char* const reasons[] = {"PNG", "KTX2", "neither PNG, JPEG nor WebP", "neither PNG, JPEG nor WebP"};
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_TRUE((*images)[i].bytes.empty());
+    EXPECT_NE((*images)[i].note.find(reasons[i]), std::string::npos) << (*images)[i].note;
+  }
+}
+
+TEST(ConvertImages, NothingBecomesLargerWithoutFewerTexels) {
+  const auto jpeg = test::make_jpeg(64, 64, 3, false, pixels_of(64, 3));
+  const auto images = ImageConverter(kPlenty).convert(scene_of({jpeg}, {scene::TextureRole::kNormal}), choice_of("webp"));
+  ASSERT_TRUE(images);
+  EXPECT_TRUE((*images)[0].bytes.empty());
+  EXPECT_NE((*images)[0].note.find("would not be smaller"), std::string::npos) << (*images)[0].note;
+}
+
+TEST(ConvertImages, MoreThanMayBeDecodedIsAnError) {
+  const auto images = ImageConverter(10'000).convert(scene_of({png(64)}, {}), choice_of("webp"));
+  ASSERT_FALSE(images);
+  EXPECT_EQ(images.error().code, ErrorCode::kUnsupported);
+  EXPECT_NE(images.error().message().find("image 0"), std::string::npos);
+}
+
+TEST(ConvertImages, AreTheSameForAnyNumberOfThreads) {
+  const auto scene = scene_of({png(64), png(33), png(50)}, {scene::TextureRole::kBaseColor});
+  std::vector<std::vector<std::uint8_t>> first;
+  for (const std::size_t threads : {1U, 2U, 7U}) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    const auto images = ImageConverter(kPlenty).convert(scene, choice_of("resize:20,webp"));
+    ASSERT_TRUE(images);
+    std::vector<std::vector<std::uint8_t>> bytes;
+    for (const builder::ConvertedImage& image : *images) bytes.push_back(image.bytes);
+    if (first.empty()) first = bytes;
+    EXPECT_EQ(bytes, first);
+  }
+}
+
+}  // namespace
+}  // namespace meshlode::app
