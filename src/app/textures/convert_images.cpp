@@ -44,8 +44,7 @@ std::vector<TexelKind> texel_kinds(const scene::Scene& scene) {
     for (const scene::TextureUse& use : material.textures) {
       if (use.blob >= uses.size()) continue;
       Uses& of = uses[use.blob];
-      const bool is_color =
-          use.role == scene::TextureRole::kBaseColor || use.role == scene::TextureRole::kEmissive;
+      const bool is_color = use.role == scene::TextureRole::kBaseColor || use.role == scene::TextureRole::kEmissive;
       of.is_color = of.is_color || is_color;
       of.is_normal = of.is_normal || use.role == scene::TextureRole::kNormal;
       of.is_data = of.is_data || (!is_color && use.role != scene::TextureRole::kNormal);
@@ -53,9 +52,9 @@ std::vector<TexelKind> texel_kinds(const scene::Scene& scene) {
   }
   std::vector<TexelKind> kinds;
   for (const Uses& of : uses) {
-    kinds.push_back(of.is_color                    ? TexelKind::kColor
+    kinds.push_back(of.is_color                   ? TexelKind::kColor
                     : of.is_normal && !of.is_data ? TexelKind::kNormal
-                                                   : TexelKind::kData);
+                                                  : TexelKind::kData);
   }
   return kinds;
 }

@@ -18,6 +18,7 @@ constexpr std::uint32_t kMostWebpSide = 16383;  ///< WEBP_MAX_DIMENSION
 /// Without alpha, every channel with as many samples as texels. `quality`: 1 to 100.
 [[nodiscard]] Result<std::vector<std::uint8_t>> encode_jpeg_file(const draw::DecodedImage& image, int quality);
 /// `quality`: 1 to 100, 0: without loss. Colours below transparent texels stay. \pre sides of at most kMostWebpSide
-[[nodiscard]] Result<std::vector<std::uint8_t>> encode_webp_file(const draw::DecodedImage& image, std::uint32_t quality);
+[[nodiscard]] Result<std::vector<std::uint8_t>> encode_webp_file(const draw::DecodedImage& image,
+                                                                 std::uint32_t quality);
 
 }  // namespace meshlode::app

@@ -58,8 +58,8 @@ PngChannels channels_of(const draw::DecodedImage& image) {
   PngChannels channels;
   for (const std::uint32_t texel : image.texels) {
     channels.has_alpha = channels.has_alpha || texel >> 24U != 255U;
-    channels.has_color = channels.has_color || (texel & 255U) != (texel >> 8U & 255U) ||
-                         (texel & 255U) != (texel >> 16U & 255U);
+    channels.has_color =
+        channels.has_color || (texel & 255U) != (texel >> 8U & 255U) || (texel & 255U) != (texel >> 16U & 255U);
   }
   return channels;
 }

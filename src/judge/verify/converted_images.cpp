@@ -91,7 +91,8 @@ std::string find_image_fault(std::span<const std::uint8_t> stored, std::string_v
   if (!theirs) return "is not the source's, which cannot be decoded: " + theirs.error().detail;
   const bool is_webp = mime_type == "image/webp";
   if (!is_webp && mime_type != source.mime_type) return "has another format than the source and the settings";
-  if (is_webp && !stated.has_webp && source.mime_type != "image/webp") return "is a WebP, which the settings do not say";
+  if (is_webp && !stated.has_webp && source.mime_type != "image/webp")
+    return "is a WebP, which the settings do not say";
   const std::uint32_t longest = std::max(theirs->width, theirs->height);
   const std::uint32_t wanted = stated.longest_side == 0 ? longest : std::min(longest, stated.longest_side);
   const double ratio = static_cast<double>(wanted) / longest;

@@ -19,8 +19,8 @@ struct StatedTextures {
 };
 [[nodiscard]] StatedTextures read_stated_textures(std::string_view words);
 
-/// Why these bytes are not the source's image under what was stated; empty where they are. Both are decoded, unless they
-/// are equal.
+/// Why these bytes are not the source's image under what was stated; empty where they are. Both are decoded, unless
+/// they are equal.
 [[nodiscard]] std::string find_image_fault(std::span<const std::uint8_t> stored, std::string_view mime_type,
                                            const scene::SceneBlob& source, const StatedTextures& stated);
 

@@ -8,6 +8,7 @@
 #include "app/batch/tell/tell.h"
 #include "app/batch/tell/time_left.h"
 #include "app/batch/work/warnings.h"
+#include "scene/import/json.h"
 
 namespace meshlode::app {
 namespace {
@@ -45,6 +46,23 @@ TEST(Summary, SumsWhatWasMadeAndCountsTheRest) {
       summary_text(results).starts_with("3 files: 1 built, 1 unchanged, 1 failed; 2,469,134 triangles, 178 bytes, "))
       << summary_text(results);
   EXPECT_EQ(summary_line({results[2]}), "nothing to do: 1 file unchanged");
+}
+
+TEST(Tell, TheSummaryCountsWhatTheCacheHad) {
+  std::vector<JobResult> results(4);
+  for (JobResult& r : results) r.status = JobStatus::kBuilt;
+  EXPECT_EQ(summary_text(results).find("cache"), std::string::npos) << "there is none";
+  results[0].cache = results[1].cache = CacheUse::kHit;
+  results[2].cache = CacheUse::kMiss;
+  results[2].meshes_from_cache = 5;
+  EXPECT_NE(summary_text(results).find("; cache: 2 hits, 1 miss, 5 meshes; "), std::string::npos)
+      << summary_text(results);
+  const scene::Json json = *scene::parse_json(report_json(results, 1, 0));
+  const scene::Json* const cache = json.find("cache");
+  ASSERT_NE(cache, nullptr);
+  EXPECT_EQ(cache->find("hits")->index(), 2U);
+  EXPECT_EQ(cache->find("misses")->index(), 1U);
+  EXPECT_EQ(cache->find("meshes")->index(), 5U);
 }
 
 TEST(Tell, WarningsAreInEveryAccount) {

@@ -24,10 +24,26 @@ TEST(TextureChoice, WordsHaveOneForm) {
 }
 
 TEST(TextureChoice, OtherTextIsNone) {
-  for (const std::string_view text :
-       {"", "Keep", "webp:", "webp:0", "webp:101", "webp:8.5", "resize", "resize:", "resize:0", "resize:16385",
-        "resize:-1", "resize:99999999999999999999", "keep,webp", "webp,webp", "resize:1,resize:2", "webp,", ",webp",
-        "webp:80,", "resize:1024 ,webp", "png"}) {
+  for (const std::string_view text : {"",
+                                      "Keep",
+                                      "webp:",
+                                      "webp:0",
+                                      "webp:101",
+                                      "webp:8.5",
+                                      "resize",
+                                      "resize:",
+                                      "resize:0",
+                                      "resize:16385",
+                                      "resize:-1",
+                                      "resize:99999999999999999999",
+                                      "keep,webp",
+                                      "webp,webp",
+                                      "resize:1,resize:2",
+                                      "webp,",
+                                      ",webp",
+                                      "webp:80,",
+                                      "resize:1024 ,webp",
+                                      "png"}) {
     EXPECT_FALSE(parse_texture_choice(text)) << text;
   }
 }

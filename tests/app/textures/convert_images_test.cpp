@@ -115,7 +115,8 @@ TEST(ConvertImages, WhatCannotBeDecodedStaysAndIsNamed) {
 
 TEST(ConvertImages, NothingBecomesLargerWithoutFewerTexels) {
   const auto jpeg = test::make_jpeg(64, 64, 3, false, pixels_of(64, 3));
-  const auto images = ImageConverter(kPlenty).convert(scene_of({jpeg}, {scene::TextureRole::kNormal}), choice_of("webp"));
+  const auto images =
+      ImageConverter(kPlenty).convert(scene_of({jpeg}, {scene::TextureRole::kNormal}), choice_of("webp"));
   ASSERT_TRUE(images);
   EXPECT_TRUE((*images)[0].bytes.empty());
   EXPECT_NE((*images)[0].note.find("would not be smaller"), std::string::npos) << (*images)[0].note;

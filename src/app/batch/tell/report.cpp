@@ -88,6 +88,13 @@ std::string report_json(const std::vector<JobResult>& results, std::uint32_t job
   w.field("generator", program_version());
   w.field("jobs", jobs);
   w.field("exit_code", exit_code);
+  const CacheCounts cache = count_cache_use(results);
+  w.key("cache");
+  w.begin_object();
+  w.field("hits", cache.hits);
+  w.field("misses", cache.misses);
+  w.field("meshes", cache.meshes);
+  w.end_object();
   w.key("builds");
   w.begin_array();
   for (const JobResult& r : results) write_build(w, r);

@@ -8,6 +8,16 @@
 
 namespace meshlode::app {
 
+CacheCounts count_cache_use(const std::vector<JobResult>& results) {
+  CacheCounts counts;
+  for (const JobResult& r : results) {
+    counts.hits += r.cache == CacheUse::kHit ? 1 : 0;
+    counts.misses += r.cache == CacheUse::kMiss ? 1 : 0;
+    counts.meshes += r.meshes_from_cache;
+  }
+  return counts;
+}
+
 std::string summary_text(const std::vector<JobResult>& results) {
   std::uint64_t triangles = 0, bytes = 0;
   double seconds = 0.0;
@@ -17,6 +27,11 @@ std::string summary_text(const std::vector<JobResult>& results) {
     seconds += r.seconds;
   }
   std::string text = summary_line(results);
+  if (const CacheCounts cache = count_cache_use(results); cache.hits + cache.misses > 0) {
+    text += "; cache: " + grouped_digits(cache.hits) + (cache.hits == 1 ? " hit, " : " hits, ") +
+            grouped_digits(cache.misses) + (cache.misses == 1 ? " miss" : " misses");
+    if (cache.meshes > 0) text += ", " + grouped_digits(cache.meshes) + (cache.meshes == 1 ? " mesh" : " meshes");
+  }
   append_format(text, "; %s triangles, %s bytes, %.2f s\n", grouped_digits(triangles).c_str(),
                 grouped_digits(bytes).c_str(), seconds);
   return text;

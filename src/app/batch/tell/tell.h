@@ -41,7 +41,14 @@ struct TestCase {
 [[nodiscard]] std::string junit_xml(const std::string& verb, const std::vector<TestCase>& tests);
 [[nodiscard]] std::string junit_xml(const std::vector<JobResult>& results);
 
-/// summary_line(), and the sums of triangles, bytes and seconds.
+/// How often a batch asked its cache, and what it got.
+struct CacheCounts {
+  std::uint64_t hits = 0, misses = 0;
+  std::uint64_t meshes = 0;  ///< that assets which were built took from it
+};
+[[nodiscard]] CacheCounts count_cache_use(const std::vector<JobResult>& results);
+
+/// summary_line(), the use of the cache where there is one, and the sums of triangles, bytes and seconds.
 [[nodiscard]] std::string summary_text(const std::vector<JobResult>& results);
 /// "3 files: 1 built, 1 unchanged, 1 failed", kinds that occur alone; "nothing to do …" where all are unchanged; how
 /// many have warnings.
