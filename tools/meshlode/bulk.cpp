@@ -174,12 +174,6 @@ void write_document(JsonWriter& json, std::string_view document, std::size_t dep
   json.raw(inner);
 }
 
-int FileOutcome::fail(Error error) {
-  exit_code = std::max(exit_code, static_cast<int>(error.code));
-  errors.push_back(std::move(error));
-  return exit_code;
-}
-
 int FileOutcome::print(const std::string& report) const {
   std::fputs(notes.c_str(), stderr);
   for (const Error& error : errors) print_error(error);

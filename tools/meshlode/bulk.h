@@ -3,12 +3,14 @@
 // said of them comes in the order in which they were given, for any number of threads.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <meshlode/result.h>
@@ -31,7 +33,11 @@ struct FileOutcome {
   std::vector<std::string> details;  ///< of several files: lines below the row; `file` is put before them
 
   /// Keeps an error. \returns its exit code, which is the file's where it is the worst
-  int fail(Error error);
+  int fail(Error error) {
+    exit_code = std::max(exit_code, static_cast<int>(error.code));
+    errors.push_back(std::move(error));
+    return exit_code;
+  }
   /// Errors, notes and text where one file was given: as if they had been printed at once. `report`: where the text
   /// goes, "-" for stdout. \returns the exit code
   [[nodiscard]] int print(const std::string& report = "-") const;

@@ -13,6 +13,7 @@
 #include "base/try.h"
 #include "draw/textures/image.h"
 #include "file_kind.h"
+#include "outputs.h"
 
 namespace meshlode::cli {
 
@@ -31,6 +32,7 @@ Result<draw::Image> read_golden(const std::string& path, const draw::Image& want
     return Error{ErrorCode::kCheckFailed, path, "there is no such golden picture; --update writes it"};
   }
   TRY_LET(file, MappedFile::open(path));
+  if (const auto id = find_file_id(path)) output_files().keep(*id);
   const auto named = [&](Error e) {
     e.where = path + (e.where.empty() ? "" : ": ") + e.where;
     return e;

@@ -17,7 +17,7 @@ namespace meshlode::judge {
 
 namespace {
 
-/// A picture is looked at in so many fields a side, of each channel's mean.
+/// A picture is looked at in so many fields a side, fewer where it has fewer texels: each channel's mean.
 constexpr std::size_t kFields = 8;
 /// Of 255. Means move by rounding and compression (below 2 for WebP at quality 50) and by turning normals to length 1
 /// again. Another picture is further away somewhere.
@@ -32,14 +32,14 @@ double light_of_level(double level) {
   return std::pow(level / 255.0, 2.2);
 }
 
-std::vector<Field> field_means(const draw::DecodedImage& image) {
+std::vector<Field> field_means(const draw::DecodedImage& image, std::size_t fields_a_side) {
   std::array<double, 256> light{};
   for (std::size_t i = 0; i < light.size(); ++i) light[i] = light_of_level(static_cast<double>(i));
-  std::vector<Field> fields(kFields * kFields);
+  std::vector<Field> fields(fields_a_side * fields_a_side);
   std::vector<double> counts(fields.size(), 0.0), weights(fields.size(), 0.0);
   for (std::size_t y = 0; y < image.height; ++y) {
     for (std::size_t x = 0; x < image.width; ++x) {
-      const std::size_t at = y * kFields / image.height * kFields + x * kFields / image.width;
+      const std::size_t at = y * fields_a_side / image.height * fields_a_side + x * fields_a_side / image.width;
       const std::uint32_t texel = image.texels[y * image.width + x];
       const double alpha = texel >> 24U, weight = alpha + 1e-3;
       for (std::size_t k = 0; k < 3; ++k) {
@@ -104,9 +104,9 @@ std::string find_image_fault(std::span<const std::uint8_t> stored, std::string_v
                   theirs->width, theirs->height);
     return text;
   }
-  // Fields of fewer texels than there are fields would not be the same part of the picture.
-  if (std::min(ours->width, ours->height) < kFields) return {};
-  const std::vector<Field> a = field_means(*ours), b = field_means(*theirs);
+  const std::size_t fields =
+      std::min<std::size_t>(kFields, std::min({ours->width, ours->height, theirs->width, theirs->height}));
+  const std::vector<Field> a = field_means(*ours, fields), b = field_means(*theirs, fields);
   for (std::size_t i = 0; i < a.size(); ++i) {
     for (std::size_t k = 0; k < 4; ++k) {
       const double moved = std::min(std::abs(a[i].levels[k] - b[i].levels[k]), std::abs(a[i].light[k] - b[i].light[k]));

@@ -107,9 +107,9 @@ TEST(Stuck, TheGlbHasTheStuckTrianglesAndAColourForEachReason) {
   }
   ASSERT_EQ(expected.size(), 7U) << "enough groups for every reason";
   const TempFile file;
-  testing::internal::CaptureStdout();
-  EXPECT_EQ(cli::extract_stuck(asset, file.path, {.format = "json"}), 0);
-  const auto told = nlohmann::json::parse(testing::internal::GetCapturedStdout());
+  const cli::FileOutcome outcome = cli::extract_stuck(asset, file.path, {.format = "json"});
+  EXPECT_EQ(outcome.exit_code, 0);
+  const auto told = nlohmann::json::parse(outcome.text);
   EXPECT_EQ(told.at("triangles"), total);
   const test::Glb glb = file.read();
   glb.expect_sound();
@@ -145,9 +145,9 @@ TEST(Stuck, AnAssetWithoutStuckGroupsGivesAGltfWithoutMeshes) {
   const run::Asset asset = open(test::build_bytes(test::make_rock_scene()));
   ASSERT_EQ(describe_asset(asset).stuck_groups, 0U);
   const TempFile file;
-  testing::internal::CaptureStdout();
-  EXPECT_EQ(cli::extract_stuck(asset, file.path, {}), 0);
-  EXPECT_NE(testing::internal::GetCapturedStdout().find("no stuck group"), std::string::npos);
+  const cli::FileOutcome outcome = cli::extract_stuck(asset, file.path, {});
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_NE(outcome.text.find("no stuck group"), std::string::npos);
   const test::Glb glb = file.read();
   EXPECT_TRUE(glb.json.contains("asset"));
   EXPECT_FALSE(glb.json.contains("meshes"));
