@@ -10,6 +10,7 @@ import { dirname, join, resolve } from 'node:path';
 import { fileURLToPath, pathToFileURL } from 'node:url';
 import { Browser, browserPath } from '../viewer/chromium.mjs';
 import { colouredSheet, herd } from './herd.mjs';
+import { checkObject } from './object_checks.mjs';
 import { lookAtServers } from './servers.mjs';
 import { serve } from './server.mjs';
 
@@ -334,6 +335,7 @@ async function lookAtVite(browser) {
 
 mkdirSync(screenshots, { recursive: true });
 install();
+await checkObject({ folder: work, expect });
 const server = await serve({ '/': here, '/node_modules/': join(work, 'node_modules'), '/assets/': work, '/data/': data,
   '/models/': process.env.MESHLODE_MODELS ?? data });
 const browser = await Browser.start();

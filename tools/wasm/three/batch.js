@@ -3,7 +3,7 @@
 // functions of three are used. Slots and instances are reused and never deleted, because three sorts its free lists at each deletion.
 import * as THREE from 'three';
 
-const FIRST_SLOTS = 64; // a small asset; the pool grows by half, which copies each byte three times at most
+const FIRST_SLOTS = 1; // most materials of a scene of many have few clusters; growth by half copies each byte three times at most
 const MOST_SLOTS = 32768; // three passes all geometries of a batch as arguments of one call; engines take about 100,000
 const grown = (count) => Math.ceil(count * 1.5);
 
@@ -59,6 +59,9 @@ export class Batch {
   }
   get isFull() {
     return this.#slots === MOST_SLOTS && this.#free.length === 0;
+  }
+  get isEmpty() {
+    return this.#slots === this.#free.length;
   }
 
   /** show() is called between begin() and end() for each cluster that is drawn. */

@@ -36,7 +36,7 @@ export class Lode extends THREE.Object3D {
   #matrices = []; // of instances; mirrored ones in the space of their batch
   #isMirrored = [];
   #uses = []; // per mesh: whether plain and mirrored instances have it
-  #batches = new Map();
+  #batches = [];
   #clusters = new Map(); // cluster -> its pieces in batches
   #pages = new Map(); // page -> its clusters
   #asked = null; // the last camera
@@ -100,8 +100,9 @@ export class Lode extends THREE.Object3D {
   dispose() {
     this.#worker?.terminate();
     this.#worker = null;
-    for (const batch of this.#batches.values()) batch.dispose();
-    for (const map of [this.#batches, this.#clusters, this.#pages]) map.clear();
+    for (const { batch } of this.#batches) batch.dispose();
+    this.#batches = [];
+    for (const map of [this.#clusters, this.#pages]) map.clear();
     this.#materials?.dispose();
     this.removeFromParent();
   }
@@ -198,31 +199,31 @@ export class Lode extends THREE.Object3D {
       this.#clusters.delete(cluster);
     }
     this.#pages.delete(page);
+    this.#batches = this.#batches.filter(({ batch }) => !batch.isEmpty || batch.dispose());
   }
 
   #batchFor(mesh, material, mirrored) {
     const { normalMode, uvSetSource, hasColor } = this.#tables.meshes[mesh];
     const key = [material, normalMode === 1, uvSetSource, hasColor, mirrored].join(' ');
-    const found = this.#batches.get(key);
-    if (found && !found.isFull) return found;
-    if (found) this.#batches.set(`${key} ${this.#batches.size}`, found);
+    const found = this.#batches.find((one) => one.key === key && !one.batch.isFull);
+    if (found) return found.batch;
     const shown = this.#materials.variant(material, normalMode !== 1, hasColor);
     const batch = new Batch(shown, uvSetSource, this.#tables.slot, mirrored === 1);
     Object.assign(batch.object, { castShadow: this.castShadow, receiveShadow: this.receiveShadow });
-    this.#batches.set(key, batch);
+    this.#batches.push({ key, batch });
     this.add(batch.object);
     return batch;
   }
 
   #draw({ id, dropped, drawn, query, resident, statistics }) {
     if (drawn) {
-      for (const batch of this.#batches.values()) batch.begin();
+      for (const { batch } of this.#batches) batch.begin();
       drawn.clusters.forEach((cluster, i) => {
         const instance = drawn.instances[i];
         const pieces = this.#clusters.get(cluster)[Number(this.#isMirrored[instance])];
         for (const { batch, slot } of pieces) batch.show(slot, instance, this.#matrices[instance]);
       });
-      for (const batch of this.#batches.values()) batch.end();
+      for (const { batch } of this.#batches) batch.end();
       this.drawn = { ...drawn, ...query, resident };
     } else if (this.drawn) {
       Object.assign(this.drawn, query, { resident });
