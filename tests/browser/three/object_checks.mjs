@@ -69,10 +69,72 @@ async function checkPool(three, expect) {
   long.lode.dispose();
 }
 
+/** Answers that are not what was asked for; `type` of a response is basic where a page's own origin sends it. */
+async function checkServers({ RangeSource }, expect) {
+  const file = Buffer.from(Array.from({ length: 200000 }, (_, i) => i % 251));
+  const plainFetch = globalThis.fetch;
+  const ask = async (answer, use, options = { timeoutMs: 2000 }) => {
+    const state = { requests: 0, closed: 0 };
+    const server = createServer((request, response) => {
+      const [, first, last] = /bytes=(\d+)-(\d+)/.exec(request.headers.range).map(Number);
+      const part = file.subarray(first, last + 1);
+      answer({ response, part, first, count: ++state.requests, range: `bytes ${first}-${first + part.length - 1}/${file.length}` });
+    });
+    await new Promise((done) => server.listen(0, '127.0.0.1', done));
+    const source = new RangeSource(`http://127.0.0.1:${server.address().port}/`, options);
+    let said;
+    try {
+      said = await use(source);
+    } catch (error) {
+      said = error.message;
+    }
+    server.closeAllConnections();
+    server.close();
+    return { said, source, ...state };
+  };
+  const first = (source) => source.read(0, 65536, true).then((bytes) => bytes.length);
+
+  const long = await ask(({ response }) => response.writeHead(206, { 'Content-Range': 'bytes 0-99/100' }).end(Buffer.alloc(5000)), first);
+  expect(/more bytes came/.test(long.said), `servers: 5000 bytes of a range of 100: ${long.said}`);
+  const open = await ask(({ response, part, range }) => response.writeHead(206, { 'Content-Range': range }).write(part), first, { timeoutMs: 500 });
+  expect(open.said === 65536 && open.requests === 1, `servers: a connection that stays open behind the range: ${open.said} bytes, ${open.requests} request`);
+  const limits = [Infinity, 2 ** 40].map((timeoutMs) => ask(({ response, part, range }) =>
+    setTimeout(() => response.writeHead(206, { 'Content-Range': range }).end(part), 50), first, { timeoutMs }));
+  expect((await Promise.all(limits)).every(({ said, requests }) => said === 65536 && requests === 1), 'servers: no time limit');
+
+  // 200 after 206: no more than the known size is read, and once for all requests.
+  const wholeAfter = (body, headers = {}) => ({ response, part, range, count }) => {
+    if (count === 1) return response.writeHead(206, { 'Content-Range': range }).end(part);
+    response.writeHead(200, headers);
+    for (let at = 0; at < body.length; at += 50000) setTimeout(() => response.write(body.subarray(at, at + 50000)), at / 5000);
+    setTimeout(() => response.end(), body.length / 5000 + 20);
+  };
+  const four = async (source) => {
+    await first(source);
+    const ends = await Promise.allSettled([70000, 90000, 110000, 130000].map((at) => source.read(at, 1000)));
+    return ends.map(({ value, reason }) => reason?.message ?? value.length).join('; ');
+  };
+  const endless = await ask(wholeAfter(Buffer.alloc(50e6)), four);
+  expect(/more bytes came/.test(endless.said) && endless.source.bytesRead < 3e6, `servers: 50 MB for a file of 0.2 are not read: ${endless.source.bytesRead} bytes`);
+  const shared = await ask(wholeAfter(file), four);
+  expect(shared.said === '1000; 1000; 1000; 1000' && shared.source.bytesRead === 65536 + file.length, `servers: four answers of 200 are read once: ${
+    shared.source.bytesRead} bytes`);
+  globalThis.fetch = (...args) => plainFetch(...args).then((response) => Object.defineProperty(response, 'type', { value: 'basic' }));
+  const early = await ask(wholeAfter(file, { 'Content-Length': 5e9 }), four);
+  expect(/more bytes came/.test(early.said) && early.source.bytesRead === 65536, `servers: a Content-Length above the size is refused unread: ${early.said}`);
+  globalThis.fetch = plainFetch;
+  // Another origin shows Content-Length, which is of the encoded bytes, and hides Content-Encoding.
+  globalThis.fetch = (...args) => plainFetch(...args).then(({ status, body }) => ({ status, body, type: 'cors', headers: new Headers({ 'Content-Length': '500' }) }));
+  const hidden = await ask(({ response }) => response.writeHead(200).end(file), first);
+  expect(hidden.said === 65536, `servers: encoded bytes of another origin: ${hidden.said}`);
+  globalThis.fetch = plainFetch;
+}
+
 export async function checkObject({ folder, expect }) {
   const at = (path) => pathToFileURL(join(folder, 'node_modules', path)).href;
   const three = await import(at('meshlode/three/index.js'));
   await checkPool(three, expect);
+  await checkServers(await import(at('meshlode/three/source.js')), expect);
 }
 
 if (process.argv[1] === new URL(import.meta.url).pathname) {

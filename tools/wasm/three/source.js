@@ -21,6 +21,7 @@ export class RangeSource {
   #file;
   #options;
   #whole = null;
+  #reading = null; // the promise of #whole
   #first = new Uint8Array(0); // bytes of the first read: part of the head, and of pages behind it in a small file
 
   /** `file`: an address or a Blob. Options: headers, credentials, timeoutMs. */
@@ -57,6 +58,7 @@ export class RangeSource {
     const fail = (message, isFinal = false) => {
       throw Object.assign(new LodeError(place, message), { isFinal });
     };
+    await this.#reading;
     if (this.#whole) {
       const end = Math.min(offset + count, this.fileBytes);
       if (!isFirst && end < offset + count) fail(`the file has ${this.fileBytes} bytes`, true);
@@ -69,7 +71,7 @@ export class RangeSource {
     let timer = 0;
     const arm = () => {
       clearTimeout(timer);
-      timer = setTimeout(() => abort.abort(new Error(`too slow: less than ${STEP_BYTES} bytes within ${limit} ms`)), limit);
+      if (limit < 2 ** 31) timer = setTimeout(() => abort.abort(new Error(`too slow: less than ${STEP_BYTES} bytes within ${limit} ms`)), limit);
     };
     arm();
     try {
@@ -80,16 +82,18 @@ export class RangeSource {
       // Another attempt helps with time-outs, limits of requests and faults of the server.
       if (status !== 200 && status !== 206) fail(`the server answers ${status}`, status < 500 && status !== 408 && status !== 429);
       if (status === 200) {
-        const whole = await this.#body(response, MOST_BYTES, arm, fail);
-        const said = Number(response.headers.get('Content-Length') ?? whole.length);
-        if (!response.headers.has('Content-Encoding') && said !== whole.length) fail(`${whole.length} of ${said} bytes came`);
-        this.#setSize(whole.length, fail);
-        this.#whole = whole;
+        if (!this.#reading && !this.#whole) {
+          this.#reading = this.#readWhole(response, arm, fail).finally(() => (this.#reading = null));
+        } else {
+          clearTimeout(timer); // another request reads the file
+          response.body.cancel();
+        }
+        await this.#reading;
         return this.#readOnce(offset, count, isFirst, place);
       }
-      this.#checkRange(response, offset, count, isFirst, fail);
-      const bytes = await this.#body(response, count, arm, fail);
-      const due = Math.min(count, (this.fileBytes ?? Infinity) - offset);
+      const said = this.#checkRange(response, offset, count, isFirst, fail);
+      const due = said ?? Math.min(count, (this.fileBytes ?? Infinity) - offset);
+      const bytes = await this.#body(response, due, said, arm, fail);
       if (bytes.length < due && !(isFirst && this.fileBytes === null)) fail(`only ${bytes.length} bytes came`);
       return bytes;
     } catch (error) {
@@ -100,31 +104,46 @@ export class RangeSource {
     }
   }
 
-  /** Content-Range, where this origin may see it. */
+  /** The bytes that Content-Range says, where this origin may see it. */
   #checkRange(response, offset, count, isFirst, fail) {
     const said = response.headers.get('Content-Range');
-    if (said === null) return;
+    if (said === null) return undefined;
     const [, first, last, total] = (/^bytes (\d+)-(\d+)\/(\d+|\*)$/.exec(said) ?? []).map(Number);
     const end = Number.isFinite(total) ? Math.min(offset + count, total) : offset + count;
     if (first !== offset || last + 1 !== end || (end < offset + count && !isFirst)) fail(`the server sends ${said}`, true);
     if (Number.isFinite(total)) this.#setSize(total, fail);
+    return end - offset;
   }
 
-  /** A body of at most `limit` bytes. */
-  async #body(response, limit, arm, fail) {
+  async #readWhole(response, arm, fail) {
+    const whole = await this.#body(response, Math.min(MOST_BYTES, this.fileBytes ?? Infinity), undefined, arm, fail);
+    this.#setSize(whole.length, fail);
+    this.#whole = whole;
+  }
+
+  /** A body of at most `limit` bytes, and of `due` where they are known: some servers leave the connection open behind them. */
+  async #body(response, limit, due, arm, fail) {
+    // Content-Length is of what is encoded, and another origin may hide that it is.
+    const isPlain = response.type === 'basic' && !response.headers.has('Content-Encoding');
+    const said = Number((isPlain && response.headers.get('Content-Length')) || NaN);
+    const check = (bytes) => bytes > limit && fail('more bytes came than were asked for', true);
+    check(said);
     const parts = [];
     let size = 0;
     let armed = 0;
     const reader = response.body.getReader();
-    for (let { value, done } = await reader.read(); !done; { value, done } = await reader.read()) {
+    while (size !== due) {
+      const { value, done } = await reader.read();
+      if (done) break;
       parts.push(value);
       size += value.length;
       this.bytesRead += value.length;
-      if (size > limit) fail('more bytes came than were asked for', true);
+      check(size);
       if (size - armed < STEP_BYTES) continue;
       armed = size;
       arm();
     }
+    if (size < said) fail(`only ${size} bytes came`);
     return new Uint8Array(await new Blob(parts).arrayBuffer());
   }
 
