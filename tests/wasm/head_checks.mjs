@@ -76,8 +76,14 @@ export function checkHead({ runtime, file, name, expect, refused }) {
   expect(refused(() => selector.select({ fovyRadians: 9, nearDistance: 1, heightPx: 1 }, 1, resident)) === 'usage', `${name}: no view`);
   expect(refused(() => head.makeFrustum({ eye: target, fovyRadians: 1, nearDistance: 1, heightPx: 1 }, target, [0, 1, 0], 1)) === 'usage',
     `${name}: no frustum`);
+  const other = head.createSelector();
   selector.close();
+  const view = { eye: target, fovyRadians: 0.7, nearDistance: 0.001 * diagonal, heightPx: 800 };
+  const ask = (one) => [() => one.select(view, 1, resident), () => one.requests, () => one.pagePriorities].map(refused);
+  expect(isSame(ask(selector), ['usage', 'usage', 'usage']), `${name}: a closed selector answers nothing`);
+  expect(isSame(ask(other), ['nothing', 'nothing', 'nothing']), `${name}: another one answers`);
   head.close();
+  expect(isSame(ask(other), ['usage', 'usage', 'usage']) && refused(() => head.createSelector()) === 'usage', `${name}: a closed asset's answers nothing`);
   whole.close();
   expect(refused(() => runtime.openHead(file.subarray(0, sizes.at(-1) - 8), file.length)) === 'invalid', `${name}: a head that is cut off`);
   expect(refused(() => runtime.openHead(file.subarray(0, sizes.at(-1)), file.length + 1)) === 'invalid', `${name}: a file of another size`);

@@ -170,7 +170,7 @@ export interface Cut {
 /** Six planes a, b, c, d: a point is inside where a x + b y + c z + d >= 0 for each; one of zeros has everything inside. */
 export type Frustum = ArrayLike<number>;
 
-/** Chooses what to draw of what is resident, and says what to load. To be closed before its asset. */
+/** Chooses what to draw of what is resident, and says what to load. The asset closes it at its own end; a closed one throws. */
 export interface Selector {
   /**
    * Page p is resident where bit p % 32 of word p / 32 is set. What is drawn covers each piece of each instance's surface once where

@@ -193,6 +193,7 @@ class Asset {
   #bytes;
   #pages = new Map(); // page -> address of its decoded bytes
   #promise = PROMISES[0];
+  #selectors = new Set(); // open ones
   #cluster = 0; // memory for one decoded cluster, made when it is first wanted
   #tables = {}; // made when they are first wanted: an asset may have millions of clusters
 
@@ -234,6 +235,7 @@ class Asset {
   /** Frees the asset; nothing of it may be used afterwards. */
   close() {
     if (this.#at === 0) return;
+    for (const selector of this.#selectors) selector.close();
     for (const page of [...this.#pages.keys()]) this.dropPage(page);
     if (this.#cluster !== 0) this.#runtime.release(this.#cluster);
     this.#wasm.meshlode_close(this.#at);
@@ -331,9 +333,10 @@ class Asset {
     }
   }
 
-  /** What selects with only some pages resident. To be closed before the asset. */
+  /** What selects with only some pages resident. The asset closes it at its own end. */
   createSelector() {
-    return new Selector(this.#runtime, this.#wasm, this.#at, this.#count('pages'));
+    if (this.#at === 0) throw new MeshlodeError('usage', 'the asset is closed');
+    return new Selector(this.#runtime, this.#wasm, this.#at, this.#count('pages'), this.#selectors);
   }
 
   /** The page that holds a cluster. */
@@ -668,8 +671,10 @@ class Selector {
   #words;
   #items;
   #capacity = 1024; // grows to what a view needs
+  #open;
 
-  constructor(runtime, wasm, asset, pageCount) {
+  /** `open`: the asset's open selectors. */
+  constructor(runtime, wasm, asset, pageCount, open) {
     this.#runtime = runtime;
     this.#wasm = wasm;
     this.#words = Math.ceil(pageCount / 32);
@@ -679,6 +684,11 @@ class Selector {
     const status = wasm.meshlode_create_selector(asset, this.#fixed, error);
     if (status !== 0) throw runtime.errorAt(status, error);
     this.#at = runtime.view().getUint32(this.#fixed, true);
+    this.#open = open.add(this);
+  }
+
+  #checkOpen() {
+    if (this.#at === 0) throw new MeshlodeError('usage', 'the selector is closed');
   }
 
   /**
@@ -686,6 +696,7 @@ class Selector {
    * cluster: {instances, clusters}.
    */
   select(view, pixelError, resident, frustum) {
+    this.#checkOpen();
     const count = this.#fixed + VIEW_BYTES;
     const words = count + 8 + ERROR_BYTES;
     for (;;) {
@@ -712,6 +723,7 @@ class Selector {
 
   /** Of the last selection: pages that it lacks, by falling priority, each behind those that it is of no use without. */
   get requests() {
+    this.#checkOpen();
     const at = this.#wasm.meshlode_page_requests(this.#at, this.#fixed) >>> 0;
     const count = this.#runtime.view().getUint32(this.#fixed, true);
     const [pages, priorities] = readPairs(this.#runtime, at, count, Float32Array);
@@ -719,6 +731,7 @@ class Selector {
   }
   /** Of the last selection, of each page: what is lost without it, in pixels; 0: nothing; INFINITE_ERROR: keep it always. */
   get pagePriorities() {
+    this.#checkOpen();
     const at = this.#wasm.meshlode_page_priorities(this.#at, this.#fixed) >>> 0;
     const count = this.#runtime.view().getUint32(this.#fixed, true);
     return new Float32Array(this.#runtime.bytes(at, 4 * count).slice().buffer);
@@ -726,6 +739,7 @@ class Selector {
 
   close() {
     if (this.#at === 0) return;
+    this.#open.delete(this);
     this.#wasm.meshlode_destroy_selector(this.#at);
     this.#runtime.release(this.#fixed);
     this.#runtime.release(this.#items);

@@ -69,6 +69,78 @@ async function checkPool(three, expect) {
   long.lode.dispose();
 }
 
+const slot = { vertices: 3, triangles: 1 };
+const inTime = (promise) => Promise.race([promise, new Promise((done) => setTimeout(done, 300, 'a hang'))])
+  .then((value) => (value === 'a hang' ? value : 'ok'), (error) => (error.name === 'LodeError' ? error.place : `${error}`));
+
+async function checkOptions({ loadLode }, expect) {
+  const bad = [{ poolBytes: NaN }, { poolBytes: -1 }, { poolBytes: '9' }, { pixelError: NaN }, { pixelError: null }, { margin: NaN }, { timeoutMs: -1 }];
+  let made = 0;
+  const createWorker = () => (++made, new FakeWorker());
+  const ends = await Promise.all(bad.map((options) => inTime(loadLode('http://localhost/', { ...options, createWorker }))));
+  expect(ends.every((place) => place === 'options') && made === 0, `options: no numbers are refused: ${ends.join(', ')}`);
+  const { lode, worker } = await openFake({ loadLode }, 1, slot, { pixelError: undefined, poolBytes: undefined, timeoutMs: Infinity });
+  const { poolBytes, timeoutMs } = worker.sent[0].options;
+  expect(lode.pixelError === 1 && poolBytes === 2 ** 28 && timeoutMs === Infinity, 'options: undefined is the default');
+}
+
+async function checkEnds(three, THREE, expect) {
+  const { Lode, loadLode } = three;
+  const worker = new FakeWorker();
+  const address = await inTime(loadLode('http://[', { createWorker: () => worker }));
+  expect(address === 'worker' && worker.sent.length === 0 && worker.ends <= 1, `ends: an address that is none: ${address}`);
+  const refusing = Object.assign(new FakeWorker(), { postMessage() {
+    throw new Error('cannot be cloned');
+  } });
+  const clone = await inTime(loadLode('http://localhost/', { createWorker: () => refusing }));
+  expect(clone === 'worker' && refusing.ends === 1, `ends: headers that cannot be sent: ${clone}, the worker is ended ${refusing.ends} times`);
+  const none = await inTime(loadLode('http://localhost/', { createWorker() {
+    throw new Error('none');
+  } }));
+  expect(none === 'worker', `ends: a worker that cannot be made: ${none}`);
+  const early = new Lode('http://localhost/', { createWorker: () => new FakeWorker(), pixelError: 1, margin: 0 });
+  early.dispose();
+  const disposed = await inTime(early.opened);
+  expect(disposed === 'worker', `ends: disposed of before it is opened: ${disposed}`);
+
+  const one = await openFake(three, 1, slot);
+  let reason = 'nothing';
+  try {
+    one.lode.clone();
+  } catch (error) {
+    reason = error.message;
+  }
+  expect(/^clone: /.test(reason), `ends: clone: ${reason}`);
+  one.lode.addEventListener('error', () => {});
+  one.lode.update(new THREE.PerspectiveCamera(), renderer);
+  one.say({ type: 'error', place: 'worker', reason: 'out of memory', isFatal: true });
+  expect(one.lode.isSettled && one.worker.ends === 1, 'ends: after a fatal error it is settled');
+  one.lode.dispose();
+  let closed = 0;
+  one.say({ type: 'image', image: 0, bitmap: { close: () => ++closed } });
+  expect(closed === 1, 'ends: an image that comes after dispose() is closed');
+}
+
+/** The error that is sent, where the object lies below a parent: that of the worst direction. */
+async function checkStretch(three, THREE, expect) {
+  const cases = [['turned and scaled', [3, 3, 3], [0.4, 1, 2], [1, 1, 1], 1, 3], ['scaled by 1, 1, 10', [1, 1, 10], [0, 0, 0], [1, 1, 1], 0.1, 10],
+    ['sheared', [1, 10, 1], [0, 0, Math.PI / 4], [1, 1, 1], 0.1, 10], ['turned between scales', [2, 10, 5], [0, 0, Math.PI / 2], [5, 1, 2], 0.04, 50],
+    ['a needle', [1, 1e-9, 1e-9], [0, 0, 0], [1, 1, 1], 1e-9, 1]];
+  for (const [what, outer, turn, inner, ratio, most] of cases) {
+    const { lode, worker } = await openFake(three, 1, slot);
+    const parent = new THREE.Group();
+    parent.scale.set(...outer);
+    parent.add(lode);
+    lode.rotation.set(...turn);
+    lode.scale.set(...inner);
+    const camera = new THREE.PerspectiveCamera();
+    lode.update(camera, renderer);
+    const { pixelError, view } = worker.sent.at(-1);
+    const isNear = (value, due) => Math.abs(value - due) < 1e-6 * due;
+    expect(isNear(pixelError, ratio) && isNear(view.nearDistance, camera.near / most), `stretch: ${what}: ${pixelError} of a pixel, near ${view.nearDistance}`);
+  }
+}
+
 /** Answers that are not what was asked for; `type` of a response is basic where a page's own origin sends it. */
 async function checkServers({ RangeSource }, expect) {
   const file = Buffer.from(Array.from({ length: 200000 }, (_, i) => i % 251));
@@ -133,7 +205,11 @@ async function checkServers({ RangeSource }, expect) {
 export async function checkObject({ folder, expect }) {
   const at = (path) => pathToFileURL(join(folder, 'node_modules', path)).href;
   const three = await import(at('meshlode/three/index.js'));
+  const THREE = await import(at('three/build/three.module.js'));
   await checkPool(three, expect);
+  await checkOptions(three, expect);
+  await checkEnds(three, THREE, expect);
+  await checkStretch(three, THREE, expect);
   await checkServers(await import(at('meshlode/three/source.js')), expect);
 }
 

@@ -179,6 +179,16 @@ async function lookAtForms(browser, server) {
   await other.value(`test.open('/assets/city.lode', { isCulled: false }).then(() => { test.frame(); test.camera.rotateY(Math.PI); })`);
   await settle(other, 'not culled');
   expect((await other.value('test.lode.drawn.clusters.length')) > 100, 'not culled: what is behind the camera is drawn');
+  // A camera that comes before the asset is open.
+  const early = `new Promise((done) => {
+    const worker = new Worker('/node_modules/meshlode/three/worker.js', { type: 'module' });
+    worker.onmessage = ({ data }) => data.type === 'selection' && done(true);
+    worker.postMessage({ type: 'open', file: location.origin + '/assets/city.lode', options: { timeoutMs: 9000, poolBytes: 1e9 } });
+    const view = { eye: [0, 0, 9], isOrthographic: false, fovyRadians: 1, nearDistance: 0.01, heightPx: 500 };
+    worker.postMessage({ type: 'view', view, frustum: null, pixelError: 1, id: 1 });
+    setTimeout(done, 9000, false);
+  })`;
+  expect(await other.value(early), 'a camera before the asset is open: is answered');
   // No camera at all: an event, and the next one is answered.
   await other.value(`test.open('/assets/city.lode').then(() => { test.look([NaN, 0, 0], [0, 0, 1]); test.lode.update(test.camera, test.renderer); })`);
   expect(await other.until(`test.errors.some(({ place }) => place === 'camera')`, 10), 'a camera that is none: an event');

@@ -19,9 +19,22 @@ const DEFAULTS = {
  * LodeError, which has the place; later errors are events.
  */
 export async function loadLode(file, options = {}) {
-  const lode = new Lode(file, { ...DEFAULTS, ...options });
+  const all = { ...DEFAULTS };
+  for (const [name, value] of Object.entries(options)) if (value !== undefined) all[name] = value;
+  const wrong = Object.keys(DEFAULTS).find((name) => !(typeof all[name] === 'number' && all[name] >= 0));
+  if (wrong) throw new LodeError('options', `${wrong} is no number of at least 0`);
+  const lode = new Lode(file, all);
   await lode.opened;
   return lode;
+}
+
+/** The largest singular value of the matrix of three columns: the largest eigenvalue of its square, by the closed form. */
+function stretchOf(axes) {
+  const mean = axes.reduce((sum, axis) => sum + axis.lengthSq() / 3, 0);
+  const rest = axes.flatMap((a, i) => axes.map((b, k) => a.dot(b) - (i === k ? mean : 0)));
+  const width = Math.sqrt(rest.reduce((sum, value) => sum + (value * value) / 6, 0));
+  const cosine = width > 0 ? new THREE.Matrix3().fromArray(rest).determinant() / (2 * width ** 3) : 1;
+  return Math.sqrt(mean + 2 * width * Math.cos(Math.acos(THREE.MathUtils.clamp(cosine, -1, 1)) / 3));
 }
 
 export class Lode extends THREE.Object3D {
@@ -30,7 +43,8 @@ export class Lode extends THREE.Object3D {
   statistics = null;
   boundingBox = new THREE.Box3();
   #options;
-  #worker;
+  #worker = null;
+  #reject;
   #materials = null;
   #tables = null;
   #matrices = []; // of instances; mirrored ones in the space of their batch
@@ -49,14 +63,14 @@ export class Lode extends THREE.Object3D {
     this.name = 'lode';
     this.#options = options;
     this.pixelError = options.pixelError;
-    this.#worker = options.createWorker?.() ?? new Worker(new URL('./worker.js', import.meta.url), { type: 'module' });
     this.opened = new Promise((resolve, reject) => {
+      this.#reject = reject;
       const refuse = (place, reason) => {
-        this.dispose();
         reject(new LodeError(place, reason));
+        this.dispose();
       };
-      this.#worker.onmessage = ({ data }) => {
-        if (this.#tables) return this.#take(data);
+      const take = ({ data }) => {
+        if (this.#tables || !this.#worker) return this.#take(data);
         if (data.type === 'error') return refuse(data.place, data.reason);
         try {
           resolve(this.#open(data));
@@ -64,12 +78,18 @@ export class Lode extends THREE.Object3D {
           refuse('scene', error.message); // opening an asset does not check its texts
         }
       };
-      this.#worker.onerror = ({ message = 'cannot be started' }) =>
-        this.#worker?.onmessage({ data: { type: 'error', place: 'worker', reason: message, isFatal: true } });
+      try {
+        const { headers, credentials, timeoutMs, poolBytes, promise, module } = options;
+        const source = file instanceof Blob ? file : new URL(file, globalThis.document?.baseURI).href;
+        this.#worker = options.createWorker?.() ?? new Worker(new URL('./worker.js', import.meta.url), { type: 'module' });
+        this.#worker.onmessage = take;
+        this.#worker.onerror = ({ message = 'cannot be started' }) =>
+          take({ data: { type: 'error', place: 'worker', reason: message, isFatal: true } });
+        this.#worker.postMessage({ type: 'open', file: source, options: { headers, credentials, timeoutMs, poolBytes, promise, module } });
+      } catch (error) {
+        refuse('worker', error.message);
+      }
     });
-    const { headers, credentials, timeoutMs, poolBytes, promise, module } = options;
-    const source = file instanceof Blob ? file : new URL(file, globalThis.document?.baseURI).href;
-    this.#worker.postMessage({ type: 'open', file: source, options: { headers, credentials, timeoutMs, poolBytes, promise, module } });
   }
 
   /** Materials of the asset. Change one before it is first drawn: others may be cloned from it. */
@@ -78,6 +98,7 @@ export class Lode extends THREE.Object3D {
   }
   /** Whether the selection for the last camera is drawn and nothing is being loaded. */
   get isSettled() {
+    if (!this.#worker) return true; // nothing comes any more
     return this.#isAnswered && this.#next === null && this.statistics !== null && !this.statistics.isLoading;
   }
   /** To be called before each frame: sends the camera to the worker where it or this object has moved. */
@@ -98,13 +119,21 @@ export class Lode extends THREE.Object3D {
 
   /** Ends the worker and frees GPU memory; the object must not be used afterwards. */
   dispose() {
-    this.#worker?.terminate();
-    this.#worker = null;
+    this.#end();
+    this.#reject(new LodeError('worker', 'is disposed of')); // nothing, once it is opened
     for (const { batch } of this.#batches) batch.dispose();
     this.#batches = [];
     for (const map of [this.#clusters, this.#pages]) map.clear();
     this.#materials?.dispose();
     this.removeFromParent();
+  }
+  #end() {
+    this.#worker?.terminate();
+    this.#worker = null;
+  }
+
+  clone() {
+    throw new LodeError('clone', 'two objects cannot have one worker: call loadLode again');
   }
 
   #ask() {
@@ -114,13 +143,15 @@ export class Lode extends THREE.Object3D {
     this.#next = null;
   }
 
-  /** The camera in the space of this object. Where axes are scaled unequally the pixel error is divided by the ratio. */
+  /** The camera in the space of this object. Where lengths are scaled unequally the pixel error is divided by the ratio. */
   #queryOf(camera, renderer) {
     camera.updateWorldMatrix(true, false);
     this.updateWorldMatrix(true, false);
     const toLocal = this.matrixWorld.clone().invert();
-    const axes = [0, 1, 2].map((k) => new THREE.Vector3().setFromMatrixColumn(this.matrixWorld, k).length());
-    const [least, , most] = axes.sort((a, b) => a - b);
+    const axes = [0, 1, 2].map((k) => new THREE.Vector3().setFromMatrixColumn(this.matrixWorld, k));
+    const most = stretchOf(axes);
+    const faces = [1, 2, 0].map((k, i) => axes[k].clone().cross(axes[3 - i - k])); // whose largest stretch is most * middle
+    const least = Math.abs(this.matrixWorld.determinant()) / stretchOf(faces);
     const eye = new THREE.Vector3().setFromMatrixPosition(camera.matrixWorld).applyMatrix4(toLocal).toArray();
     const projection = camera.projectionMatrix.elements;
     const isOrthographic = projection[15] === 1;
@@ -165,7 +196,7 @@ export class Lode extends THREE.Object3D {
   }
 
   #take(data) {
-    if (!this.#worker) return; // disposed of
+    if (!this.#worker) return data.bitmap?.close(); // disposed of
     if (data.type === 'page') this.#addPage(data);
     if (data.type === 'selection') this.#draw(data);
     if (data.type === 'image') this.#setImage(data);
@@ -174,6 +205,7 @@ export class Lode extends THREE.Object3D {
   }
 
   #fail({ place, reason, isFatal = false, ...detail }) {
+    if (isFatal) this.#end();
     const message = `${place}: ${reason}`;
     // Without a listener an error goes to the console.
     if (this._listeners?.error?.length > 0) this.dispatchEvent({ ...detail, type: 'error', place, message, isFatal });
@@ -248,7 +280,7 @@ export class Lode extends THREE.Object3D {
 
   #setImage({ image, bitmap, bytes }) {
     const show = (texture) => {
-      if (!this.#worker) return;
+      if (!this.#worker) return texture.dispose();
       this.#materials.setImage(image, texture);
       this.dispatchEvent({ type: 'change' });
     };

@@ -54,6 +54,7 @@ class Streamer {
     const { meshes, materials, instances } = asset;
     const scene = inPlace('scene', () => asset.scene);
     postMessage({ type: 'opened', meshes, materials, instances, scene, slot, pageCount: asset.pages.length });
+    this.#schedule(); // a camera that came before
   }
 
   /** Selects for a camera; each is answered. */
