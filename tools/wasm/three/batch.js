@@ -22,14 +22,11 @@ export class Batch {
     this.#slot = { vertices: slot.vertices, indices: 3 * slot.triangles };
     this.#uvNames = uvSets.map((set) => (set === 0 ? 'uv' : `uv${set}`));
     const { vertices, indices } = this.#slot;
-    const object = new THREE.BatchedMesh(FIRST_SLOTS, FIRST_SLOTS * vertices, FIRST_SLOTS * indices, material);
-    object.name = material.name;
-    object.frustumCulled = false; // the worker culls
-    object.perObjectFrustumCulled = false;
-    object.sortObjects = material.transparent;
+    this.object = new THREE.BatchedMesh(FIRST_SLOTS, FIRST_SLOTS * vertices, FIRST_SLOTS * indices, material);
+    const { name, transparent: sortObjects } = material;
+    Object.assign(this.object, { name, sortObjects, frustumCulled: false, perObjectFrustumCulled: false }); // the worker culls
     // three flips the winding by the determinant of an object, not of an instance: mirrored instances are mirrored twice.
-    if (isMirrored) object.scale.set(-1, 1, 1);
-    this.object = object;
+    if (isMirrored) this.object.scale.set(-1, 1, 1);
   }
 
   /** Copies the triangles of a cluster into a slot, and returns it. */
@@ -88,7 +85,6 @@ export class Batch {
       this.#shown[id].isVisible = false;
     }
   }
-
   dispose() {
     this.object.removeFromParent();
     this.object.dispose();

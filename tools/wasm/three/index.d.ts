@@ -2,7 +2,7 @@
 import type { Box3, Camera, Material, Object3D, Object3DEventMap, WebGLRenderer } from 'three';
 import type { Cut, Frustum, PromiseKind, View } from '../index.js';
 
-/** A refusal with its place: a range of the file, 'head', 'page 3', 'image 0', 'camera' or 'worker'. */
+/** A refusal with its place: a range of the file, 'head', 'page 3', 'image 0', 'camera', 'options' or 'worker'. */
 export class LodeError extends Error {
   readonly place: string;
   readonly reason: string;
@@ -11,7 +11,7 @@ export class LodeError extends Error {
 export interface LodeOptions {
   /** What a cut may be off on the screen; 1. May be set later: lode.pixelError. */
   pixelError?: number;
-  /** Bytes of vertices and indices that are kept; 256 MiB. The coarsest geometry of all meshes is kept whatever this says. */
+  /** Bytes of vertices and indices of resident pages; 256 MiB. The buffers may be larger, and the coarsest geometry is always kept. */
   poolBytes?: number;
   /** Widens the view volume by this share on each side, for turns faster than an answer; 0.1. */
   margin?: number;
@@ -24,7 +24,7 @@ export interface LodeOptions {
   /** Of each request. */
   headers?: Record<string, string>;
   credentials?: RequestCredentials;
-  /** Within which 64 KiB of a request have to come; 30,000. */
+  /** Within which 64 KiB of a request have to come; 30,000. Infinity: no limit. */
   timeoutMs?: number;
   /** Where a bundler or an origin wants another worker than three/worker.js of this package. */
   createWorker?: () => Worker;

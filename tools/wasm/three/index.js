@@ -4,7 +4,6 @@ import * as THREE from 'three';
 import { Batch } from './batch.js';
 import { Materials } from './materials.js';
 import { LodeError } from './source.js';
-
 export { LodeError };
 
 const DEFAULTS = {
@@ -14,18 +13,20 @@ const DEFAULTS = {
   timeoutMs: 30000, // of a request
 };
 
-/**
- * Opens an asset by its head, and resolves when its tables are read. `file`: an address, or a Blob (a dropped file). Rejects with a
- * LodeError, which has the place; later errors are events.
- */
+/** Opens an asset by its head. `file`: an address or a Blob. Rejects with a LodeError, which has the place; later errors are events. */
 export async function loadLode(file, options = {}) {
   const all = { ...DEFAULTS };
   for (const [name, value] of Object.entries(options)) if (value !== undefined) all[name] = value;
   const wrong = Object.keys(DEFAULTS).find((name) => !(typeof all[name] === 'number' && all[name] >= 0));
   if (wrong) throw new LodeError('options', `${wrong} is no number of at least 0`);
   const lode = new Lode(file, all);
-  await lode.opened;
-  return lode;
+  try {
+    await lode.opened;
+    return lode;
+  } catch (error) {
+    lode.dispose();
+    throw error instanceof LodeError ? error : new LodeError('worker', error.message);
+  }
 }
 
 /** The largest singular value of the matrix of three columns: the largest eigenvalue of its square, by the closed form. */
@@ -65,30 +66,21 @@ export class Lode extends THREE.Object3D {
     this.pixelError = options.pixelError;
     this.opened = new Promise((resolve, reject) => {
       this.#reject = reject;
-      const refuse = (place, reason) => {
-        reject(new LodeError(place, reason));
-        this.dispose();
-      };
-      const take = ({ data }) => {
+      const { headers, credentials, timeoutMs, poolBytes, promise, module } = options;
+      const source = file instanceof Blob ? file : new URL(file, globalThis.document?.baseURI).href;
+      const worker = (this.#worker = options.createWorker?.() ?? new Worker(new URL('./worker.js', import.meta.url), { type: 'module' }));
+      worker.onmessage = ({ data }) => {
         if (this.#tables || !this.#worker) return this.#take(data);
-        if (data.type === 'error') return refuse(data.place, data.reason);
+        if (data.type === 'error') return reject(new LodeError(data.place, data.reason));
         try {
           resolve(this.#open(data));
         } catch (error) {
-          refuse('scene', error.message); // opening an asset does not check its texts
+          reject(new LodeError('scene', error.message)); // opening an asset does not check its texts
         }
       };
-      try {
-        const { headers, credentials, timeoutMs, poolBytes, promise, module } = options;
-        const source = file instanceof Blob ? file : new URL(file, globalThis.document?.baseURI).href;
-        this.#worker = options.createWorker?.() ?? new Worker(new URL('./worker.js', import.meta.url), { type: 'module' });
-        this.#worker.onmessage = take;
-        this.#worker.onerror = ({ message = 'cannot be started' }) =>
-          take({ data: { type: 'error', place: 'worker', reason: message, isFatal: true } });
-        this.#worker.postMessage({ type: 'open', file: source, options: { headers, credentials, timeoutMs, poolBytes, promise, module } });
-      } catch (error) {
-        refuse('worker', error.message);
-      }
+      worker.onerror = ({ message: reason = 'cannot be started' }) =>
+        worker.onmessage({ data: { type: 'error', place: 'worker', reason, isFatal: true } });
+      worker.postMessage({ type: 'open', file: source, options: { headers, credentials, timeoutMs, poolBytes, promise, module } });
     });
   }
 
@@ -107,16 +99,13 @@ export class Lode extends THREE.Object3D {
     const query = this.#queryOf(camera, renderer);
     const key = JSON.stringify(query);
     if (key === this.#asked) return;
-    this.#asked = key;
-    this.#next = query;
+    [this.#asked, this.#next] = [key, query];
     this.#ask();
   }
-
   /** Requests failed pages again. */
   retry() {
     this.#worker?.postMessage({ type: 'retry' });
   }
-
   /** Ends the worker and frees GPU memory; the object must not be used afterwards. */
   dispose() {
     this.#end();
@@ -131,7 +120,6 @@ export class Lode extends THREE.Object3D {
     this.#worker?.terminate();
     this.#worker = null;
   }
-
   clone() {
     throw new LodeError('clone', 'two objects cannot have one worker: call loadLode again');
   }
@@ -203,37 +191,29 @@ export class Lode extends THREE.Object3D {
     if (data.type === 'answer') this.#answer(data.id);
     if (data.type === 'error') this.#fail(data);
   }
-
   #fail({ place, reason, isFatal = false, ...detail }) {
     if (isFatal) this.#end();
     const message = `${place}: ${reason}`;
-    // Without a listener an error goes to the console.
     if (this._listeners?.error?.length > 0) this.dispatchEvent({ ...detail, type: 'error', place, message, isFatal });
-    else console.error(`meshlode: ${message}`);
+    else console.error(`meshlode: ${message}`); // without a listener
   }
 
   #addPage({ page, clusters }) {
     this.#pages.set(page, clusters.map(({ cluster }) => cluster));
     for (const { cluster, mesh, pieces, ...arrays } of clusters) {
-      const made = [null, null];
-      for (const mirrored of [0, 1]) {
-        if (!this.#uses[mesh][mirrored]) continue;
-        const put = (batch, triangles) => ({ batch, slot: batch.put(arrays, triangles) });
-        made[mirrored] = pieces.map(({ material, triangles }) => put(this.#batchFor(mesh, material, mirrored), triangles));
-      }
-      this.#clusters.set(cluster, made);
+      const put = (batch, triangles) => ({ batch, slot: batch.put(arrays, triangles) });
+      const putAll = (mirrored) => pieces.map(({ material, triangles }) => put(this.#batchFor(mesh, material, mirrored), triangles));
+      this.#clusters.set(cluster, [0, 1].map((mirrored) => (this.#uses[mesh][mirrored] ? putAll(mirrored) : [])));
     }
   }
-
   #dropPage(page) {
     for (const cluster of this.#pages.get(page) ?? []) {
-      for (const pieces of this.#clusters.get(cluster)) pieces?.forEach(({ batch, slot }) => batch.drop(slot));
+      for (const pieces of this.#clusters.get(cluster)) pieces.forEach(({ batch, slot }) => batch.drop(slot));
       this.#clusters.delete(cluster);
     }
     this.#pages.delete(page);
     this.#batches = this.#batches.filter(({ batch }) => !batch.isEmpty || batch.dispose());
   }
-
   #batchFor(mesh, material, mirrored) {
     const { normalMode, uvSetSource, hasColor } = this.#tables.meshes[mesh];
     const key = [material, normalMode === 1, uvSetSource, hasColor, mirrored].join(' ');
@@ -271,7 +251,6 @@ export class Lode extends THREE.Object3D {
     const { bytesRead: loaded, fileBytes: total, missing, isFull } = statistics;
     this.dispatchEvent({ type: 'progress', loaded, total, missing, isFull, isComplete: missing === 0 && this.isSettled });
   }
-
   #answer(id) {
     if (id !== this.#ids) return;
     this.#isAnswered = true;

@@ -23,7 +23,6 @@ export class Materials {
     this.#isKtx2 = isKtx2;
     this.list = records.map((record) => this.#create(record));
   }
-
   /** glTF images that the materials use, each once. */
   get images() {
     return [...this.#users.keys()];
@@ -106,22 +105,18 @@ export class Materials {
     const other = extensions.EXT_texture_webp?.source ?? extensions.EXT_texture_avif?.source;
     return ktx2 ?? other ?? source ?? extensions.KHR_texture_basisu?.source;
   }
-
   #createTexture(source, texture, use, colorSpace) {
     const made = source.clone();
     this.#textures.push(made);
     const sampler = this.#scene.samplers?.[texture.sampler] ?? {};
     const transform = use.extensions?.KHR_texture_transform ?? {};
-    made.colorSpace = colorSpace;
-    made.flipY = false;
-    made.wrapS = WRAP[sampler.wrapS] ?? THREE.RepeatWrapping;
-    made.wrapT = WRAP[sampler.wrapT] ?? THREE.RepeatWrapping;
-    made.magFilter = FILTER[sampler.magFilter] ?? THREE.LinearFilter;
-    made.minFilter = FILTER[sampler.minFilter] ?? THREE.LinearMipmapLinearFilter;
+    const [wrapS, wrapT] = [sampler.wrapS, sampler.wrapT].map((wrap) => WRAP[wrap] ?? THREE.RepeatWrapping);
+    const magFilter = FILTER[sampler.magFilter] ?? THREE.LinearFilter;
+    const minFilter = FILTER[sampler.minFilter] ?? THREE.LinearMipmapLinearFilter;
+    Object.assign(made, { colorSpace, flipY: false, wrapS, wrapT, magFilter, minFilter, rotation: transform.rotation ?? 0 });
     if (made.isCompressedTexture && made.mipmaps.length < 2) made.minFilter = THREE.LinearFilter; // a GPU makes no mip levels of these
     made.channel = Math.max(0, [0, 1, 2, 3].indexOf(transform.texCoord ?? use.texCoord));
     made.offset.fromArray(transform.offset ?? [0, 0]);
-    made.rotation = transform.rotation ?? 0;
     made.repeat.fromArray(transform.scale ?? [1, 1]);
     made.needsUpdate = true;
     return made;

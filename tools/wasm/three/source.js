@@ -28,7 +28,6 @@ export class RangeSource {
   constructor(file, options) {
     this.#file = file;
     this.#options = options;
-    // A Blob's slices are read as ranges are.
     if (file instanceof Blob) [this.#whole, this.fileBytes] = [file, file.size];
   }
 
@@ -71,7 +70,8 @@ export class RangeSource {
     let timer = 0;
     const arm = () => {
       clearTimeout(timer);
-      if (limit < 2 ** 31) timer = setTimeout(() => abort.abort(new Error(`too slow: less than ${STEP_BYTES} bytes within ${limit} ms`)), limit);
+      const end = () => abort.abort(new Error(`too slow: less than ${STEP_BYTES} bytes within ${limit} ms`));
+      if (limit < 2 ** 31) timer = setTimeout(end, limit); // longer ones end at once
     };
     arm();
     try {
@@ -82,12 +82,8 @@ export class RangeSource {
       // Another attempt helps with time-outs, limits of requests and faults of the server.
       if (status !== 200 && status !== 206) fail(`the server answers ${status}`, status < 500 && status !== 408 && status !== 429);
       if (status === 200) {
-        if (!this.#reading && !this.#whole) {
-          this.#reading = this.#readWhole(response, arm, fail).finally(() => (this.#reading = null));
-        } else {
-          clearTimeout(timer); // another request reads the file
-          response.body.cancel();
-        }
+        if (this.#reading || this.#whole) clearTimeout(timer); // another request reads the file
+        else this.#reading = this.#readWhole(response, arm, fail).finally(() => (this.#reading = null));
         await this.#reading;
         return this.#readOnce(offset, count, isFirst, place);
       }
@@ -129,8 +125,7 @@ export class RangeSource {
     const check = (bytes) => bytes > limit && fail('more bytes came than were asked for', true);
     check(said);
     const parts = [];
-    let size = 0;
-    let armed = 0;
+    let [size, armed] = [0, 0];
     const reader = response.body.getReader();
     while (size !== due) {
       const { value, done } = await reader.read();
@@ -146,7 +141,6 @@ export class RangeSource {
     if (size < said) fail(`only ${size} bytes came`);
     return new Uint8Array(await new Blob(parts).arrayBuffer());
   }
-
   #setSize(total, fail) {
     if (this.fileBytes !== null && total !== this.fileBytes) fail(`the file had ${this.fileBytes} bytes and has ${total}`, true);
     this.fileBytes = total;

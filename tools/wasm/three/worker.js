@@ -71,19 +71,14 @@ class Streamer {
   }
 
   #schedule() {
-    if (this.#isDue) return;
+    if (this.#isDue || !this.#asset) return;
     this.#isDue = true;
     // Behind the messages in the queue: the newest camera counts.
-    setTimeout(() => {
+    setTimeout(() => guard(() => {
       this.#isDue = false;
-      guard(() => this.#step());
-    });
-  }
-
-  #step() {
-    if (!this.#asset) return;
-    if (this.#query) this.#choose();
-    this.#readImage();
+      if (this.#query) this.#choose();
+      this.#readImage();
+    }));
   }
 
   #choose() {
@@ -129,7 +124,8 @@ class Streamer {
       const priority = wanted.get(page);
       if (priority === undefined || this.#flying.has(page) || (isFirst && priority !== INFINITE_ERROR)) return false;
       const cost = this.#asset.pages[page].clusterCount * this.#slotBytes;
-      spare ??= this.#residentPages().filter((one) => all[one] !== INFINITE_ERROR).sort((a, b) => all[b] - all[a]);
+      const isSpare = (one) => (this.#resident[one >> 5] >>> (one & 31)) & 1 && all[one] !== INFINITE_ERROR;
+      spare ??= [...this.#asset.pages.keys()].filter(isSpare).sort((a, b) => all[b] - all[a]);
       while (priority !== INFINITE_ERROR && this.#used + cost > this.#poolBytes) {
         const last = spare.at(-1);
         if (last === undefined || all[last] >= priority) return false;
@@ -148,10 +144,8 @@ class Streamer {
     for (const [page, priority] of wanted) {
       if (this.#flights >= FLIGHTS || (isFirst && priority !== INFINITE_ERROR)) break;
       if (this.#flying.has(page)) continue;
-      if (!take(page)) {
-        isFull = true;
-        break;
-      }
+      isFull = !take(page);
+      if (isFull) break;
       this.#read(this.#runAround(page, take));
     }
     return { dropped, isFull, isRedrawn };
@@ -197,21 +191,19 @@ class Streamer {
       if (error instanceof WebAssembly.RuntimeError) throw error;
       return error;
     }
-    const buffers = [];
+    const buffers = new Set();
     const clusters = [];
     const { firstCluster, clusterCount } = asset.pages[page];
     for (let cluster = firstCluster; cluster < firstCluster + clusterCount; ++cluster) {
-      const mesh = asset.meshOf(cluster);
       const { positions, normals, uvs, colors, triangles, triangleMaterials } = asset.decodeFloats(cluster);
       const pieces = splitByMaterial(triangles, triangleMaterials);
-      clusters.push({ cluster, mesh, positions, normals, uvs, colors, pieces });
-      for (const array of [positions, normals, ...uvs, colors]) if (array) buffers.push(array.buffer);
-      for (const { triangles: some } of pieces) buffers.push(some.buffer);
+      clusters.push({ cluster, mesh: asset.meshOf(cluster), positions, normals, uvs, colors, pieces });
+      for (const array of [positions, normals, ...uvs, colors, ...pieces.map((one) => one.triangles)]) if (array) buffers.add(array.buffer);
     }
     asset.dropPage(page);
     this.#resident[page >> 5] |= 1 << (page & 31);
     this.#unpackMs += performance.now() - start;
-    postMessage({ type: 'page', page, clusters }, [...new Set(buffers)]);
+    postMessage({ type: 'page', page, clusters }, [...buffers]);
     return null;
   }
 
@@ -241,19 +233,12 @@ class Streamer {
     this.#isReadingImage = false;
     this.#schedule();
   }
-
-  #residentPages() {
-    return [...this.#asset.pages.keys()].filter((page) => (this.#resident[page >> 5] >>> (page & 31)) & 1);
-  }
 }
 
 const isEqual = (a, b) => a.length === b.length && a.every((value, i) => value === b[i]);
-
 /** [{material, triangles}]: one for nearly all clusters. */
 const splitByMaterial = (triangles, materials) =>
-  Array.from(new Set(materials), (material) => ({
-    material, triangles: triangles.filter((_, i) => materials[Math.floor(i / 3)] === material),
-  }));
+  Array.from(new Set(materials), (material) => ({ material, triangles: triangles.filter((_, i) => materials[Math.floor(i / 3)] === material) }));
 
 function inPlace(place, call) {
   try {
@@ -262,11 +247,8 @@ function inPlace(place, call) {
     throw error instanceof WebAssembly.RuntimeError ? error : new LodeError(place, error.message);
   }
 }
-
-function fail(error, detail = {}) {
+const fail = (error, detail = {}) =>
   postMessage({ type: 'error', place: error.place ?? 'worker', reason: error.reason ?? error.message, ...detail });
-}
-
 /** An unexpected error (out of memory) is reported and ends the streaming: the module must not be used again. */
 let isOver = false;
 async function guard(call) {
