@@ -11,6 +11,7 @@ export class LodeError extends Error {
 
 const ATTEMPTS = 3; // a dropped connection, a server that restarts; more attempts delay the error
 const WAIT_MS = 400; // before the second attempt, four times as long before the third: two seconds in all
+const END_MS = 100; // for the end of a body whose bytes are all there: it comes with them, or never; a cache wants it
 const STEP_BYTES = 65536; // due within each time limit: 2 kB/s at 30 s, below which a picture never comes
 const MOST_BYTES = 2 ** 31; // of a range, or of a file without ranges: a tab has no memory for more beside what it draws
 
@@ -99,7 +100,6 @@ export class RangeSource {
       abort.abort(); // ends a body that is too long
     }
   }
-
   /** The bytes that Content-Range says, where this origin may see it. */
   #checkRange(response, offset, count, isFirst, fail) {
     const said = response.headers.get('Content-Range');
@@ -110,13 +110,11 @@ export class RangeSource {
     if (Number.isFinite(total)) this.#setSize(total, fail);
     return end - offset;
   }
-
   async #readWhole(response, arm, fail) {
     const whole = await this.#body(response, Math.min(MOST_BYTES, this.fileBytes ?? Infinity), undefined, arm, fail);
     this.#setSize(whole.length, fail);
     this.#whole = whole;
   }
-
   /** A body of at most `limit` bytes, and of `due` where they are known: some servers leave the connection open behind them. */
   async #body(response, limit, due, arm, fail) {
     // Content-Length is of what is encoded, and another origin may hide that it is.
@@ -127,8 +125,10 @@ export class RangeSource {
     const parts = [];
     let [size, armed] = [0, 0];
     const reader = response.body.getReader();
-    while (size !== due) {
-      const { value, done } = await reader.read();
+    for (;;) {
+      const next = reader.read();
+      const end = () => new Promise((resolve) => setTimeout(resolve, END_MS, { done: true }));
+      const { value, done } = await (size === due ? Promise.race([next, end()]) : next);
       if (done) break;
       parts.push(value);
       size += value.length;
