@@ -105,6 +105,8 @@ class Exporter {
   Result<std::vector<std::uint8_t>> run();
 
  private:
+  Result<std::vector<Member>> gather_members(std::span<const MeshId> member_ids) const;
+  Status find_steps(std::span<const std::vector<MeshId>> meshes);
   Status add_mesh(std::size_t mesh, std::span<const MeshId> member_ids);
   Status place_mesh(std::span<const Member> members, ExportedMesh& exported) const;
   Status add_primitives(const Member& member, const Json* source, std::span<CutPrimitive> primitives,
@@ -129,6 +131,7 @@ class Exporter {
   Json document_;
   Json meshes_ = Json::array();
   std::vector<ExportedMesh> exported_;
+  std::map<double, double> steps_;  ///< of quantized positions, by the step of a mesh's grid
   GlbBinary binary_;
   PrimitiveWriter primitives_{asset_, document_, binary_, packing_};
   std::map<std::pair<std::uint64_t, std::uint64_t>, GlbBinary::Range> carried_;  ///< blobs in it, by offset and bytes
@@ -288,6 +291,25 @@ Status Exporter::add_primitives(const Member& member, const Json* source, std::s
   return Ok{};
 }
 
+FrameOfPositions collect_positions(std::span<const Member> members) {
+  FrameOfPositions positions;
+  for (const Member& member : members) {
+    for (const auto& level : member.levels) positions.add(member.record, level);
+  }
+  return positions;
+}
+
+/// Meshes of one grid may share a border (`build --grid`), which stays closed where they have one step.
+Status Exporter::find_steps(std::span<const std::vector<MeshId>> meshes) {
+  for (const std::vector<MeshId>& member_ids : meshes) {
+    TRY_LET(members, gather_members(member_ids));
+    const FrameOfPositions positions = collect_positions(*members);
+    double& step = steps_[positions.grid_step()];
+    step = std::max(step, positions.frame(step).step);
+  }
+  return Ok{};
+}
+
 /// What all levels of a mesh stand in: a viewer puts one in the place of another.
 Status Exporter::place_mesh(std::span<const Member> members, ExportedMesh& exported) const {
   if (!packing_.quantize) {
@@ -297,11 +319,8 @@ Status Exporter::place_mesh(std::span<const Member> members, ExportedMesh& expor
     }
     return Ok{};
   }
-  FrameOfPositions positions;
-  for (const Member& member : members) {
-    for (const auto& level : member.levels) positions.add(member.record, level);
-  }
-  const QuantizedFrame frame = positions.frame();
+  const FrameOfPositions positions = collect_positions(members);
+  const QuantizedFrame frame = positions.frame(steps_.at(positions.grid_step()));
   // Readers have the transforms of nodes as floats.
   const bool is_held =
       std::isnormal(static_cast<float>(frame.step)) && std::isfinite(static_cast<float>(frame.origin.x)) &&
@@ -315,22 +334,27 @@ Status Exporter::place_mesh(std::span<const Member> members, ExportedMesh& expor
   return Ok{};
 }
 
-/// The source's mesh with this index, of what the asset has of it. A level that a member lacks is its coarsest.
-Status Exporter::add_mesh(std::size_t mesh, std::span<const MeshId> member_ids) {
-  ExportedMesh& exported = exported_.emplace_back();
+Result<std::vector<Member>> Exporter::gather_members(std::span<const MeshId> member_ids) const {
   std::vector<Member> members;
-  std::size_t level_count = 0;
   for (const MeshId id : member_ids) {
     Member member{asset_.meshes()[id.value], chains_[id.value]};
     for (const std::vector<ClusterId>& cut : member.chain.cuts) {
       TRY_LET(primitives, gather_cut(asset_, id, cut));
       if (!primitives->empty()) member.levels.push_back(std::move(*primitives));
     }
-    if (member.levels.empty()) continue;
-    level_count = std::max(level_count, member.levels.size());
-    members.push_back(std::move(member));
+    if (!member.levels.empty()) members.push_back(std::move(member));
   }
+  return members;
+}
+
+/// The source's mesh with this index, of what the asset has of it. A level that a member lacks is its coarsest.
+Status Exporter::add_mesh(std::size_t mesh, std::span<const MeshId> member_ids) {
+  ExportedMesh& exported = exported_.emplace_back();
+  TRY_LET(gathered, gather_members(member_ids));
+  std::vector<Member>& members = *gathered;
   if (members.empty()) return Ok{};
+  std::size_t level_count = 0;
+  for (const Member& member : members) level_count = std::max(level_count, member.levels.size());
   TRY(place_mesh(members, exported));
   exported.screen_coverage = join_coverage(members, level_count);
   const Json* source = find_element(document_, "meshes", mesh);
@@ -506,6 +530,9 @@ Result<std::vector<std::uint8_t>> Exporter::run() {
   exported_.reserve(asset_.meshes().size());
   std::vector<std::vector<MeshId>> members(origins_.size());
   for (std::size_t m = 0; m < origins_.size(); ++m) members[origins_[m]].emplace_back(m);
+  if (packing_.quantize) {
+    TRY(find_steps(members));
+  }
   for (std::size_t m = 0; m < members.size(); ++m) {
     TRY(add_mesh(m, members[m]));
   }

@@ -57,12 +57,18 @@ void FrameOfPositions::add(const format::MeshRecord& record, std::span<const Cut
   }
 }
 
-QuantizedFrame FrameOfPositions::frame() const {
+QuantizedFrame FrameOfPositions::frame(double least_step) const {
   const Vec3d size = high_ - low_;
-  const double widest = std::max({size.x, size.y, size.z});
+  if (!(step_ > 0.0) || !std::isfinite(std::max({size.x, size.y, size.z}))) return {};
   QuantizedFrame frame{low_, step_};
-  if (!(frame.step > 0.0) || !std::isfinite(widest)) return {};
-  while (widest / frame.step > kMostShort) frame.step *= 2.0;
+  const auto is_too_fine = [&] {
+    const Vec3d reach = (high_ - frame.origin) / frame.step;
+    return frame.step < least_step || std::max({reach.x, reach.y, reach.z}) > kMostShort;
+  };
+  while (is_too_fine()) {
+    frame.step *= 2.0;
+    frame.origin = glm::floor(low_ / frame.step) * frame.step;  // positions that meshes share are rounded alike
+  }
   return frame;
 }
 
@@ -110,7 +116,10 @@ VertexStream pack_normals(std::span<const Vec3f> normals, std::uint32_t scale, P
   VertexStream stream{
       bits > 8 ? kShort : kByte, true, bits > 8 ? 4 * sizeof(std::int16_t) : 4 * sizeof(std::int8_t), {}};
   if (packing.meshopt) {
-    stream.bytes = encode_octahedral(normals, bits, stream.stride);
+    // Of an octahedron too, but one that no reader turns back to the asset's own: the error is an eighth of its step.
+    constexpr int kMoreBits = 3;
+    bits = std::min(bits + kMoreBits, 16);
+    stream = {kShort, true, 4 * sizeof(std::int16_t), encode_octahedral(normals, bits, 4 * sizeof(std::int16_t))};
     stream.filter = "OCTAHEDRAL";
     return stream;
   }

@@ -46,11 +46,13 @@ struct QuantizedFrame {
 };
 
 /// Collects positions, in mesh space. frame() is the asset's own grid where the positions span no more than 16 bits of
-/// it, so that nothing is lost; else one coarser by a power of two.
+/// it, so that nothing is lost; else one coarser by a power of two, with an origin at a multiple of its step.
 class FrameOfPositions {
  public:
   void add(const format::MeshRecord& record, std::span<const CutPrimitive> primitives);
-  [[nodiscard]] QuantizedFrame frame() const;
+  /// `least_step`: what another mesh of the same grid has; its step is at least that.
+  [[nodiscard]] QuantizedFrame frame(double least_step) const;
+  [[nodiscard]] double grid_step() const { return step_; }
 
  private:
   bool is_empty_ = true;

@@ -232,6 +232,68 @@ TEST(ExportPacked, PositionsOfMoreThanSixteenBitsMoveByHalfAStepOfACoarserGrid) 
   }
 }
 
+/// n x n quads over [low, high], in x and z: hills that have one profile at x = 100.013, whatever their height.
+scene::SourceMesh make_field(const char* name, std::uint32_t n, Vec2d low, Vec2d high, double height) {
+  scene::Primitive field;
+  field.material = MaterialId(0U);
+  for (std::uint32_t y = 0; y <= n; ++y) {
+    for (std::uint32_t x = 0; x <= n; ++x) {
+      const Vec2d p = low + (high - low) * (Vec2d(x, y) / double(n));
+      field.positions.emplace_back(p.x, height * std::sin(p.x - 100.013) + std::sin(p.y), p.y);
+      const std::uint32_t v = y * (n + 1) + x;
+      if (x < n && y < n) field.indices.insert(field.indices.end(), {v, v + n + 1, v + 1, v + 1, v + n + 1, v + n + 2});
+    }
+  }
+  scene::SourceMesh mesh;
+  mesh.name = name;
+  mesh.primitives.push_back(std::move(field));
+  return mesh;
+}
+
+TEST(ExportPacked, MeshesOfOneGridFitTogetherAsTheyDid) {
+  // The second one would fit 16 bits of the grid, the first one does not.
+  scene::Scene scene;
+  scene.meshes = {make_field("large", 40, {-199.987, 0.017}, {100.013, 60.017}, 20.0),
+                  make_field("small", 40, {100.013, 0.017}, {130.013, 60.017}, 0.0)};
+  for (std::uint32_t m = 0; m < 2; ++m) {
+    scene.instances.emplace_back().mesh = MeshId(m);
+    scene.instances.back().node = m;
+  }
+  scene.materials.emplace_back().source_index = 0xFFFFFFFFU;
+  scene.document = R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 1]}],
+    "nodes": [{"mesh": 0}, {"mesh": 1}], "meshes": [{"name": "large"}, {"name": "small"}]})";
+  const auto bytes = test::build_bytes(scene, 1.0 / 1024.0);
+  const auto asset = run::Asset::from_bytes(bytes);
+  ASSERT_TRUE(asset.ok());
+  ASSERT_EQ(asset->meshes()[0].grid.log2, asset->meshes()[1].grid.log2);
+  for (const Packing packing : {Packing{}, Packing{true, false}, Packing{true, true}}) {
+    const auto glb = export_glb(*asset, test::finest_cuts(*asset), packing);
+    ASSERT_TRUE(glb.ok());
+    const scene::Scene read = imported(*glb);
+    ASSERT_EQ(read.instances.size(), 2U);
+    std::array<std::set<std::tuple<double, double, double>>, 2> points;
+    for (const scene::SceneInstance& instance : read.instances) {
+      for (const scene::Primitive& primitive : read.meshes[instance.mesh.value].primitives) {
+        for (const auto& position : primitive.positions) {
+          const Vec3d p(instance.transform * glm::dvec4(position, 1.0));
+          if (std::abs(p.x - 100.013) < 0.1) points[instance.mesh.value].emplace(p.x, p.y, p.z);
+        }
+      }
+    }
+    EXPECT_EQ(points[0].size(), 41U);
+    EXPECT_TRUE(points[0] == points[1]) << packing.quantize << packing.meshopt;
+  }
+}
+
+TEST(ExportPacked, NormalsMoveByLittleWhereTheyAreCompressed) {
+  const auto bytes = test::build_bytes(test::make_rock_scene());
+  const auto asset = run::Asset::from_bytes(bytes);
+  ASSERT_TRUE(asset.ok());
+  const auto cut = test::finest_cuts(*asset)[0];
+  const auto glb = packed(*asset, cut, {true, true});
+  expect_same(triangles_of_cut(*asset, cut), triangles_of_import(glb, asset->meshes()[0], {1.0, 2.0, 3.0}), 0.02);
+}
+
 TEST(ExportPacked, TextureCoordinatesBeyondTheUnitSquareStayFloats) {
   scene::Scene scene = test::make_rock_scene(8);
   for (scene::Primitive& primitive : scene.meshes[0].primitives) {
