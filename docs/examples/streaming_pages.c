@@ -56,7 +56,11 @@ static int make_room(size_t bytes, float priority, const float* priorities) {
     uint32_t p, least = page_count;
     for (p = 0; p < page_count; ++p)
       if (slots[p] && priorities[p] < (least < page_count ? priorities[least] : priority)) least = p;
-    if (least == page_count) return 0;
+    if (least == page_count && priority < MESHLODE_INFINITE_ERROR) return 0;
+    if (least == page_count) { /* without it nothing is drawn: the pool grows */
+      pool_bytes = used_bytes + bytes;
+      return 1;
+    }
     free(slots[least]);
     slots[least] = NULL;
     used_bytes -= pages[least].bytes;
@@ -166,6 +170,7 @@ int main(int argc, char** argv) {
     if (write_png(name, &picture[0][0][0], WIDTH, HEIGHT)) stop(name, "cannot be written"); /* 5. */
     load_requests(selector);                                                                /* for the frames to come */
   }
+  if (!items) stop(argv[1], "the last frame shows nothing");
   printf("%u clusters, %u bytes in a pool of %u\n", (unsigned)items, (unsigned)used_bytes, (unsigned)pool_bytes);
   meshlode_destroy_selector(selector);
   meshlode_close(asset);

@@ -103,6 +103,26 @@ TEST(StreamingPages, ReadsTheHeadAndWantedPagesAlone) {
   fs::remove_all(folder);
 }
 
+TEST(StreamingPages, SmallAssetsAreDrawnAndNothingIsAnError) {
+  // Their coarsest pages are more than a quarter of all.
+  const fs::path folder = fs::path(testing::TempDir()) / "streaming_small";
+  for (const char* name : {"rock", "crystal"}) {
+    fs::remove_all(folder);
+    fs::create_directories(folder);
+    const fs::path asset = folder / "asset.lode";
+    const std::string build = "'" MESHLODE_PROGRAM "' build --quiet --preset fast '" +
+                              (fs::path(MESHLODE_SOURCE_DIR) / "data" / name).string() + ".glb' -o '" + asset.string() +
+                              "'";
+    ASSERT_EQ(std::system(build.c_str()), 0) << build;
+    const std::string command =
+        "'" MESHLODE_STREAMING_PAGES "' '" + asset.string() + "' '" + (folder / "frame").string() + "' ";
+    EXPECT_EQ(std::system((command + "4").c_str()), 0) << name;
+    EXPECT_GT(drawn_pixels(folder / "frame003.png"), 3'000U) << name;
+    EXPECT_NE(std::system((command + "1 2>/dev/null").c_str()), 0) << "nothing is there for the first frame";
+  }
+  fs::remove_all(folder);
+}
+
 TEST(StreamingPages, ThePageShowsTheProgram) {
   const fs::path root = MESHLODE_SOURCE_DIR;
   const std::string code = text_of(root / "docs/examples/streaming_pages.c");
