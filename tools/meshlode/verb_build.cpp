@@ -136,6 +136,9 @@ Result<std::vector<Job>> take_share(const std::vector<Job>& jobs, BuildCommand& 
     if (const auto id = find_file_id(costs)) output_files().keep(*id);
     TRY(check_is_manifest(costs, "meshlode merge"));
     TRY_LET(last, app::read_costs(costs));
+    if (!last->empty() && !jobs.empty() && !app::knows_any(*last, jobs)) {
+      return Error{ErrorCode::kInvalid, costs, "names none of these inputs; paths are compared as they were given"};
+    }
     weights = app::weigh_by_costs(jobs, weights, *last);
   }
   command.shard = app::plan_shard(jobs, weights, *shard);

@@ -117,7 +117,9 @@ sed 's/"complete": true/"complete": false/' costs.json >working.json
 run build in -O out --shard 1/3 --shard-costs working.json
 run build in -O out --shard 1/3 --shard-costs in/1.obj
 run build in -O out --shard 1/3 --shard-costs costs.json --manifest costs.json
-rm costs.json working.json
+sed 's|"input": "in/|"input": "elsewhere/|' costs.json >other.json
+run build in -O out --shard 1/3 --shard-costs other.json
+rm costs.json working.json other.json
 for i in 1 2 3; do shard "$i/3"; done
 
 echo "usage"

@@ -5,6 +5,7 @@
 #include <cassert>
 #include <cstddef>
 #include <map>
+#include <set>
 #include <string>
 
 #include "app/batch/shard/read_manifest.h"
@@ -21,6 +22,12 @@ Result<std::vector<JobResult>> read_costs(const std::filesystem::path& manifest)
     return Error{ErrorCode::kInvalid, manifest.string(), "the batch was interrupted, or is still at work"};
   }
   return std::move(read->results);
+}
+
+bool knows_any(const std::vector<JobResult>& last, const std::vector<Job>& jobs) {
+  std::set<std::string> inputs;
+  for (const JobResult& result : last) inputs.insert(result.job.input.native());
+  return std::any_of(jobs.begin(), jobs.end(), [&](const Job& job) { return inputs.contains(job.input.native()); });
 }
 
 std::vector<std::uint64_t> weigh_by_costs(const std::vector<Job>& jobs, std::span<const std::uint64_t> bytes,

@@ -18,6 +18,9 @@ namespace meshlode::app {
 /// is still at work: either may change before the last shard has read it, and shards that differ in it overlap.
 [[nodiscard]] Result<std::vector<JobResult>> read_costs(const std::filesystem::path& manifest);
 
+/// Whether `last` has one of these inputs, by its path: without any it is most likely another batch's.
+[[nodiscard]] bool knows_any(const std::vector<JobResult>& last, const std::vector<Job>& jobs);
+
 /// Processor time, in microseconds, of the jobs that `last` built, by their inputs. The others, which are new, came
 /// from a cache or failed, weigh what their bytes take at the rate of those. Bytes themselves where `last` built none.
 /// \pre as many bytes as jobs
