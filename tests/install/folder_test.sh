@@ -49,9 +49,29 @@ case $part in
     (cd "else where/deep" && ../link build --quiet ../../rock.glb -o link.lode && cmp ../../expected.lode link.lode)
     PATH="$work/else where/meshlode/bin:$PATH" meshlode build --quiet rock.glb -o path.lode && cmp expected.lode path.lode
     MESHLODE_LIBC=host "$program" build --quiet rock.glb -o host.lode && cmp expected.lode host.lode
+    # Libraries of the host want its libc, which the folder does not start: they are left out.
+    for name in LD_PRELOAD LD_AUDIT; do
+      env "$name=/nowhere/host.so" "$PWD/$program" --version >said 2>&1 || fail "$name stops the program"
+      grep -F host.so said && fail "$name reaches the program"
+    done
+    # What the loader expands.
+    for folder in 'a$LIB' 'a:b' 'a;b'; do
+      cp -r "else where/meshlode" "$folder"
+      said=$("$folder/bin/meshlode" --version 2>&1) && fail "it runs from $folder"
+      [[ $said == *"cannot run from a path with"* ]] || fail "$folder: $said"
+      rm -r "$folder"
+    done
     # It starts itself again, which a program that the kernel knows as its loader finds no other way.
     "$program" sweep rock.glb -o sweep --knobs simplifier --budget 1s >/dev/null
     grep -q '"file_bytes"' sweep/sweep.json || fail "sweep measured nothing"
+
+    # Without its launcher it says so.
+    mv "$program" launcher
+    folder="$PWD/else where/meshlode"
+    said=$("$folder/lib/libc/ld-linux-x86-64.so.2" --library-path "$folder/lib:$folder/lib/libc" "$folder/libexec/meshlode" \
+      sweep rock.glb -o none --knobs simplifier --budget 1s 2>&1) && fail "sweep without its launcher succeeds"
+    [[ $said == *"$program"* ]] || fail "without a launcher: $said"
+    mv launcher "$program"
 
     folder="else where/meshlode"
     loaded=$("$folder/lib/libc/ld-linux-x86-64.so.2" --list --library-path "$folder/lib:$folder/lib/libc" "$folder/libexec/meshlode")
@@ -64,6 +84,12 @@ case $part in
     for needed in libc6 libstdc++6 libtbb12 libmetis5 libcgal-dev; do
       grep -q "^$needed [^ ]*, source " "$folder/licences/LIBRARIES.txt" || fail "$needed is not named"
     done
+    grep -q '://' "$folder/licences/LIBRARIES.txt" && fail "an address of a package archive"
+    # A library that is missing is named.
+    mkdir bin && printf '#!/bin/sh\nldd.real "$@"; echo "	libnowhere.so.1 => not found"\n' | sed "s|ldd.real|$(command -v ldd)|" >bin/ldd
+    chmod +x bin/ldd
+    PATH="$work/bin:$PATH" "$source/tools/package/folder.sh" "$build" "$work/lacking" >said 2>&1 && fail "a library that is missing is left out"
+    grep -F libnowhere.so.1 said
     # A folder of somebody else's stays.
     mkdir other && touch other/mine
     "$source/tools/package/folder.sh" "$build" other >/dev/null 2>&1 && fail "another folder was replaced"

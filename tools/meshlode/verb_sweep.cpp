@@ -172,7 +172,8 @@ Status set_options(const SweepWords& words, lab::SweepOptions& options) {
   // Before any thread is started: libraries that are loaded later are not this program's.
   TRY_LET(program, app::find_program_id());
   options.program_id = to_hex(*program);
-  options.program = app::find_launcher();
+  TRY_LET(launcher, app::find_launcher());
+  options.program = std::move(*launcher);
   return Ok{};
 }
 

@@ -27,7 +27,9 @@ install -m 755 "$build/meshlode" "$folder/libexec/meshlode"
 strip "$folder/libexec/meshlode"
 
 # What the program is linked with, by all steps, the loader, and what oneTBB opens by name as it starts.
-libraries=$(ldd "$build/meshlode" | sed -nE 's/.*=> (\/[^ ]+) .*/\1/p; s/^\s+(\/[^ ]+) .*/\1/p')
+linked=$(ldd "$build/meshlode")
+! grep -F 'not found' <<<"$linked" >&2 || fail "the libraries above are missing"
+libraries=$(sed -nE 's/.*=> (\/[^ ]+) .*/\1/p; s/^\s+(\/[^ ]+) .*/\1/p' <<<"$linked")
 beside() { dirname "$(grep "/$1\.so" <<<"$libraries")"; }
 libraries+=" $(beside libtbb)/libtbbmalloc.so.2"
 # Of the same libc what drivers of older distributions are linked with.
@@ -65,7 +67,7 @@ grep -rhoE '/usr/share/common-licenses/[A-Za-z]+(-[0-9.]*[0-9])?' "$folder/licen
   [ ! -e "$text" ] || cp -L "$text" "$folder/licences/libraries/"
 done
 {
-  echo "What is inside, by Debian's packages. Their sources, by name and version: https://snapshot.debian.org"
+  echo "What is inside, by Debian's packages. Their sources, by name and version, are in Debian's snapshot archive."
   echo
   printf '%s\n' "${packages[@]}" | sort -u |
     xargs dpkg-query -W -f '${Package} ${Version}, source ${source:Package} ${source:Version}\n'

@@ -44,7 +44,9 @@ int main(int, char** argv) {
     folder.resize(slash);
   }
   errno = EINVAL;
-  if (folder.find_first_of(":;") != std::string::npos) return fail("cannot run from a path with ':' or ';'", folder);
+  // The loader takes ':' and ';' for the end of a path, and expands '$'.
+  if (folder.find_first_of(":;$") != std::string::npos)
+    return fail("cannot run from a path with ':', ';' or '$'", folder);
 
   std::string loader = folder + "/lib/libc/" + kLoader;
   std::string libraries = folder + "/lib:" + folder + "/lib/libc";
@@ -53,6 +55,10 @@ int main(int, char** argv) {
   if (libc != nullptr && std::strcmp(libc, "host") == 0) {
     loader = std::string("/lib64/") + kLoader;
     libraries = folder + "/lib";
+  } else {
+    // Libraries of the host want the host's libc.
+    ::unsetenv("LD_PRELOAD");
+    ::unsetenv("LD_AUDIT");
   }
   std::string option = "--library-path", program = folder + "/libexec/meshlode";
   std::vector<char*> command{loader.data(), option.data(), libraries.data(), program.data()};

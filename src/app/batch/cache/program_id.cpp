@@ -3,10 +3,12 @@
 
 #include <link.h>
 #include <sys/auxv.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <map>
 #include <string>
+#include <system_error>
 
 #include "base/file.h"
 #include "base/try.h"
@@ -48,11 +50,17 @@ Result<Hash128> find_program_id() {
   return hasher.digest();
 }
 
-std::filesystem::path find_launcher() {
+Result<std::filesystem::path> find_launcher() {
   const char* path = loaded_by_name();
-  if (path == nullptr) return kSelf;
+  if (path == nullptr) return std::filesystem::path(kSelf);
   // /libexec/meshlode -> /bin/meshlode
-  return std::filesystem::path(path).parent_path().parent_path() / "bin" / "meshlode";
+  std::error_code ec;
+  auto launcher = std::filesystem::absolute(path, ec).parent_path().parent_path() / "bin" / "meshlode";
+  if (::access(launcher.c_str(), X_OK) != 0) {
+    return Error{ErrorCode::kIo, launcher.string(),
+                 "is missing; it starts a program that the loader was given by name"};
+  }
+  return launcher;
 }
 
 }  // namespace meshlode::app

@@ -18,7 +18,8 @@ namespace meshlode::app {
 [[nodiscard]] Result<Hash128> find_program_id();
 
 /// What starts this very program again: no path where the kernel has a name for it, since the path may be another
-/// program's by then; in the relocatable folder (tools/package/folder.sh) its launcher.
-[[nodiscard]] std::filesystem::path find_launcher();
+/// program's by then; in the relocatable folder (tools/package/folder.sh) its launcher. Errors: kIo the
+/// folder has none.
+[[nodiscard]] Result<std::filesystem::path> find_launcher();
 
 }  // namespace meshlode::app
