@@ -270,7 +270,7 @@ static void save_picture(const char* path, double* covered) {
     for (x = 0; x < WIDTH; ++x) count += picture[y][x][0] != 32 || picture[y][x][1] != 32 || picture[y][x][2] != 32;
   }
   *covered = 100.0 * (double)count / (WIDTH * HEIGHT);
-  if (write_png(path, &picture[0][0][0], WIDTH, HEIGHT)) stop(path, "cannot be written");
+  if (write_png(path, &picture[0][0][0], WIDTH, HEIGHT)) stop(path, "cannot be written, or is no PNG");
 }
 
 static void normalize(double* v) {

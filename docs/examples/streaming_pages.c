@@ -167,8 +167,8 @@ int main(int argc, char** argv) {
     memset(depth, 0, sizeof depth);
     for (i = 0; i < items; ++i) draw(list[i], view.eye, axes);
     if (snprintf(name, sizeof name, "%s%03u.png", argv[2], frame) >= (int)sizeof name) stop(argv[2], "is too long");
-    if (write_png(name, &picture[0][0][0], WIDTH, HEIGHT)) stop(name, "cannot be written"); /* 5. */
-    load_requests(selector);                                                                /* for the frames to come */
+    if (write_png(name, &picture[0][0][0], WIDTH, HEIGHT)) stop(name, "cannot be written, or is no PNG"); /* 5. */
+    load_requests(selector); /* for the frames to come */
   }
   if (!items) stop(argv[1], "the last frame shows nothing");
   printf("%u clusters, %u bytes in a pool of %u\n", (unsigned)items, (unsigned)used_bytes, (unsigned)pool_bytes);

@@ -509,7 +509,7 @@ static double save_picture(const char* path) {
     memcpy(picture[i], rgba + 4 * i, 3);
     count += picture[i][0] != 32 || picture[i][1] != 32 || picture[i][2] != 32;
   }
-  if (write_png(path, &picture[0][0], WIDTH, HEIGHT)) stop(path, "cannot be written");
+  if (write_png(path, &picture[0][0], WIDTH, HEIGHT)) stop(path, "cannot be written, or is no PNG");
   return 100.0 * (double)count / (WIDTH * HEIGHT);
 }
 
@@ -575,9 +575,9 @@ int main(int argc, char** argv) {
   depth_view =
       make_image(VK_FORMAT_D32_SFLOAT, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT, VK_IMAGE_ASPECT_DEPTH_BIT, &depth);
   draw_frame();
-  covered = save_picture(argv[2]);
   count = ((const VkDrawIndirectCommand*)mapped[DRAW])->instanceCount;
   check_cut(&view, pixel_error, count);
+  covered = save_picture(argv[2]);
   for (i = 0; i < count; ++i) triangles += clusters[((const gpu_item*)mapped[ITEMS])[i].cluster].triangles_less_1 + 1u;
   printf("%s: %u triangles in %u clusters, %.2f%% of the picture covered\n", properties.deviceName, (unsigned)triangles,
          (unsigned)count, covered);

@@ -5,6 +5,9 @@
 
 #include <stdint.h>
 #include <stdio.h>
+#include <string.h>
+
+#define PNG_SIGNATURE "\x89PNG\r\n\x1a\n"
 
 typedef struct png_file {
   FILE* out;
@@ -34,13 +37,25 @@ static void png_end(png_file* png) {
   png_put_number(png, ~png->crc);
 }
 
+/* Nothing, an empty file or a PNG: whatever else is there, such as the asset that was read, stays. */
+static int png_may_replace(const char* path) {
+  FILE* in = fopen(path, "rb");
+  char first[8];
+  size_t bytes;
+  if (!in) return 1;
+  bytes = fread(first, 1, sizeof first, in);
+  fclose(in);
+  return bytes == 0 || (bytes == sizeof first && !memcmp(first, PNG_SIGNATURE, sizeof first));
+}
+
 /* Rows from the top. width <= 21,000, height <= 65,000. 0: written; else `path` is not to be used. */
 static int write_png(const char* path, const unsigned char* rgb, uint32_t width, uint32_t height) {
   const uint32_t row = 1 + 3 * width; /* with its filter, which is none */
   uint32_t y, i, low = 1, high = 0;   /* Adler-32 */
   png_file png = {NULL, 0, 0};
+  if (!png_may_replace(path)) return 1;
   if (!(png.out = fopen(path, "wb"))) return 1;
-  png_put(&png, "\x89PNG\r\n\x1a\n", 8);
+  png_put(&png, PNG_SIGNATURE, 8);
   png_begin(&png, 13, "IHDR");
   png_put_number(&png, width);
   png_put_number(&png, height);

@@ -64,6 +64,9 @@ for program in opengl vulkan; do
   same $program rock.lode 1 3,2,4 0,0,0
   same $program rock.lode 16 -1,0.5,-2 0,0,0
   same $program city.lode 2 240,180,300 0,0,0
+  cp rock.lode kept.lode
+  "b/$program" kept.lode ./kept.lode 1 3 2 4 0 0 0 2>/dev/null && fail "$program writes a picture over its asset"
+  cmp rock.lode kept.lode || fail "$program changed its asset"
   if "b/$program" missing.lode x.png 1 3 2 4 0 0 0 2>/dev/null || [ -e x.png ]; then fail "a missing asset is drawn"; fi
 done
 echo "PASSED"
