@@ -17,6 +17,7 @@
 
 #include <unistd.h>
 
+#include "base/file.h"
 #include "base/guarded.h"
 
 namespace meshlode::cli {
@@ -87,6 +88,10 @@ OutputFiles& output_files() {
   // Never destroyed: the thread that waits for signals may need it while the process ends.
   static auto* const files = new OutputFiles(OutputFiles::Folders::kAreMade);
   return *files;
+}
+
+void keep_file(const std::filesystem::path& path) {
+  if (const auto id = find_file_id(path)) output_files().keep(*id);
 }
 
 Status write_text(const std::string& path, const std::string& text) {

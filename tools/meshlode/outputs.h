@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <span>
 #include <string>
@@ -16,6 +17,9 @@ namespace meshlode::cli {
 /// The one list of what the command has read and written: one process is one command. Folders of its outputs that are
 /// missing are made as these are written.
 [[nodiscard]] OutputFiles& output_files();
+
+/// A file that was read, if it is there: no output replaces it.
+void keep_file(const std::filesystem::path& path);
 
 /// Writes text to a file of output_files().
 [[nodiscard]] Status write_text(const std::string& path, const std::string& text);

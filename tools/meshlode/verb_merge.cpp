@@ -23,16 +23,12 @@ namespace meshlode::cli {
 
 namespace {
 
-void keep(const std::filesystem::path& path) {
-  if (const auto id = find_file_id(path)) output_files().keep(*id);
-}
-
 /// Neither scenes and what they name nor assets are written over.
 void keep_files(const std::vector<app::JobResult>& results) {
   for (const app::JobResult& r : results) {
-    keep(r.job.input);
-    keep(r.job.output);
-    for (const app::Dependency& file : r.files) keep(file.path);
+    keep_file(r.job.input);
+    keep_file(r.job.output);
+    for (const app::Dependency& file : r.files) keep_file(file.path);
   }
 }
 
@@ -50,7 +46,7 @@ int run_merge(const Verb& verb, std::span<char* const> args) {
 
   std::vector<app::ShardManifest> shards;
   for (const std::string& path : paths) {
-    keep(path);
+    keep_file(path);
     if (const Status kind = check_is_manifest(path, "meshlode build --shard"); !kind) return print_error(kind.error());
     auto manifest = app::read_manifest(path);
     if (!manifest) return print_error(manifest.error());

@@ -29,18 +29,14 @@ struct ReportFile {
   std::string format, path;
 };
 
-void keep(const fs::path& path) {
-  if (const auto id = find_file_id(path)) output_files().keep(*id);
-}
-
 Result<app::Manifest> read_kept(const std::string& path) {
   TRY(check_is_manifest(path));
   TRY_LET(manifest, app::read_manifest(path));
-  keep(path);
+  keep_file(path);
   for (const app::JobResult& r : manifest->results) {
-    keep(r.job.input);
-    keep(r.job.output);
-    for (const app::Dependency& file : r.files) keep(file.path);
+    keep_file(r.job.input);
+    keep_file(r.job.output);
+    for (const app::Dependency& file : r.files) keep_file(file.path);
   }
   return std::move(*manifest);
 }

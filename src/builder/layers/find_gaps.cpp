@@ -18,7 +18,7 @@ namespace {
 
 /// Of a mesh's diagonal. At an error of a wider gap the whole mesh is fifty pixels wide. With 1/128 FlightHelmet shows
 /// another surface at 0.054% of its pixels (errors of 3 to 24 pixels, three seeds of METIS), with this at 0.011%.
-constexpr double kReach = 0.02;
+constexpr double kWidestReach = 0.02;
 /// Of the reach. What is nearer than the grid's step lies in one plane.
 constexpr double kLeastGap = 2e-3;
 /// Rays: one pair for every square of so much of the diagonal, for every tenth triangle at least, and no more than
@@ -74,7 +74,7 @@ class GapFinder {
   GapFinder(const scene::Scene& scene, std::span<const std::uint8_t> wants, std::span<const std::uint8_t> stands_alone)
       : placed_(scene, stands_alone), gaps_(scene.meshes.size()) {
     for (std::size_t i = 0; i < gaps_.size(); ++i) {
-      gaps_[i].reach = kReach * placed_.shape(i).diagonal;
+      gaps_[i].reach = kWidestReach * placed_.shape(i).diagonal;
       if (wants[i] != 0) gaps_[i].codes.resize(placed_.shape(i).triangles.size(), 0);
     }
   }
