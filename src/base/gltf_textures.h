@@ -31,16 +31,23 @@ concept JsonHandle = requires(const T& json, std::string_view key, std::size_t i
 inline constexpr std::array<std::string_view, 4> kTextureSourceExtensions{"KHR_texture_basisu", "EXT_texture_webp",
                                                                           "EXT_texture_avif", "MSFT_texture_dds"};
 
-/// The image of a texture, as an index in `images`, not held against its length: the texture's own source, which
-/// everybody can read, else that of the first extension that names one.
-template <JsonHandle Json>
-[[nodiscard]] std::optional<std::uint64_t> image_of_texture(const Json& texture) {
-  if (const auto own = texture.find("source").index()) return own;
+/// Calls `visit` with every image that a texture names, as an index in `images`, not held against its length: the
+/// texture's own source, which everybody can read, then those of extensions.
+template <JsonHandle Json, class Visit>
+void for_each_image_of_texture(const Json& texture, const Visit& visit) {
+  if (const auto own = texture.find("source").index()) visit(*own);
   const Json extensions = texture.find("extensions");
   for (const std::string_view name : kTextureSourceExtensions) {
-    if (const auto source = extensions.find(name).find("source").index()) return source;
+    if (const auto source = extensions.find(name).find("source").index()) visit(*source);
   }
-  return std::nullopt;
+}
+
+/// The image of a texture: the first of them.
+template <JsonHandle Json>
+[[nodiscard]] std::optional<std::uint64_t> image_of_texture(const Json& texture) {
+  std::optional<std::uint64_t> first;
+  for_each_image_of_texture(texture, [&](std::uint64_t image) { first = first ? first : image; });
+  return first;
 }
 
 /// A textureInfo of glTF, with its KHR_texture_transform.

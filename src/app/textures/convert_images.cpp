@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -14,9 +16,11 @@
 #include "app/textures/shrink.h"
 #include "base/append_format.h"
 #include "base/byte_size.h"
+#include "base/gltf_textures.h"
 #include "base/parallel.h"
 #include "base/try.h"
 #include "draw/textures/image.h"
+#include "run/read/json_text.h"
 
 namespace meshlode::app {
 
@@ -34,28 +38,52 @@ FileKind kind_of(std::span<const std::uint8_t> bytes) {
   return bytes[0] == 0xFF ? FileKind::kJpeg : bytes[0] == 'R' ? FileKind::kWebp : FileKind::kPng;
 }
 
-/// By what samples each blob. An image that is both a colour and something else is a colour.
+/// What samples an image: bits.
+constexpr unsigned kColorUse = 1, kAlphaUse = 2, kNormalUse = 4, kDataUse = 8;
+
+/// Alpha is read from a base colour, where the material is not opaque (glTF 2.0, 3.9.4).
+unsigned use_of(scene::TextureRole role, scene::AlphaMode mode) {
+  switch (role) {
+    case scene::TextureRole::kBaseColor: return mode == scene::AlphaMode::kOpaque ? kColorUse : kColorUse | kAlphaUse;
+    case scene::TextureRole::kEmissive: return kColorUse;
+    case scene::TextureRole::kNormal: return kNormalUse;
+    default: return kDataUse;
+  }
+}
+
+/// An image that is both a colour and something else is a colour.
+TexelKind kind_of_uses(unsigned uses) {
+  if ((uses & kColorUse) != 0) return (uses & kAlphaUse) != 0 ? TexelKind::kColor : TexelKind::kOpaqueColor;
+  return uses == kNormalUse ? TexelKind::kNormal : TexelKind::kData;
+}
+
+/// By what samples each blob, through whichever image of a texture: a WebP has the role of the PNG that stands in its
+/// place for those who do not read it.
 std::vector<TexelKind> texel_kinds(const scene::Scene& scene) {
-  struct Uses {
-    bool is_color = false, is_normal = false, is_data = false;
-  };
-  std::vector<Uses> uses(scene.blobs.size());
+  std::vector<unsigned> blobs(scene.blobs.size(), 0);
+  std::map<std::uint64_t, unsigned> textures, images;
   for (const scene::SceneMaterial& material : scene.materials) {
     for (const scene::TextureUse& use : material.textures) {
-      if (use.blob >= uses.size()) continue;
-      Uses& of = uses[use.blob];
-      const bool is_color = use.role == scene::TextureRole::kBaseColor || use.role == scene::TextureRole::kEmissive;
-      of.is_color = of.is_color || is_color;
-      of.is_normal = of.is_normal || use.role == scene::TextureRole::kNormal;
-      of.is_data = of.is_data || (!is_color && use.role != scene::TextureRole::kNormal);
+      const unsigned bits = use_of(use.role, material.alpha_mode);
+      if (use.blob < blobs.size()) blobs[use.blob] |= bits;
+      textures[use.texture] |= bits;
     }
   }
+  const run::JsonText document(scene.document);
+  std::uint64_t index = 0;
+  document.find("textures").for_each([&](std::string_view, const run::JsonText& texture) {
+    const auto uses = textures.find(index++);
+    if (uses == textures.end()) return;
+    for_each_image_of_texture(texture, [&](std::uint64_t image) { images[image] |= uses->second; });
+  });
+  index = 0;
+  document.find("images").for_each([&](std::string_view, const run::JsonText& image) {
+    const auto uses = images.find(index++);
+    const auto blob = image.find("blob").index();
+    if (uses != images.end() && blob && *blob < blobs.size()) blobs[*blob] |= uses->second;
+  });
   std::vector<TexelKind> kinds;
-  for (const Uses& of : uses) {
-    kinds.push_back(of.is_color                   ? TexelKind::kColor
-                    : of.is_normal && !of.is_data ? TexelKind::kNormal
-                                                  : TexelKind::kData);
-  }
+  for (const unsigned uses : blobs) kinds.push_back(kind_of_uses(uses));
   return kinds;
 }
 
@@ -83,11 +111,11 @@ Result<EncodedImage> encode_smallest(const draw::DecodedImage& image, const Imag
   const bool has_webp = choice.webp_quality != 0 || task.kind == FileKind::kWebp;
   if (has_webp) {
     const std::uint32_t quality = choice.webp_quality != 0 ? choice.webp_quality : builder::kUsualWebpQuality;
-    TRY_LET(webp, encode_webp_file(image, texels == TexelKind::kColor ? quality : 0));
+    TRY_LET(webp, encode_webp_file(image, is_color(texels) ? quality : 0));
     take(std::move(*webp), FileKind::kWebp);
   }
   // Of what was lossy before, lossless data is no smaller: it may stay what it was.
-  if (task.is_smaller && task.kind == FileKind::kJpeg && (!has_webp || texels != TexelKind::kColor)) {
+  if (task.is_smaller && task.kind == FileKind::kJpeg && (!has_webp || !is_color(texels))) {
     TRY_LET(jpeg, encode_jpeg_file(image, kJpegQuality));
     take(std::move(*jpeg), FileKind::kJpeg);
   }

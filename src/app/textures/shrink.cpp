@@ -50,10 +50,10 @@ Texel unpack_texel(std::uint32_t packed, TexelKind kind) {
   Texel out{};
   for (std::size_t k = 0; k < 4; ++k) {
     const std::uint32_t level = packed >> 8U * k & 255U;
-    out[k] = kind == TexelKind::kColor && k < 3 ? linear_levels()[level] : level / 255.0;
+    out[k] = is_color(kind) && k < 3 ? linear_levels()[level] : level / 255.0;
   }
-  if (kind != TexelKind::kColor) return out;
-  out[4] = out[3] + kLeastAlpha;
+  if (!is_color(kind)) return out;
+  out[4] = kind == TexelKind::kColor ? out[3] + kLeastAlpha : 1.0;
   for (std::size_t k = 0; k < 3; ++k) out[k] *= out[4];
   return out;
 }
@@ -73,7 +73,7 @@ std::uint32_t pack_texel(Texel texel, TexelKind kind) {
   }
   std::uint32_t out = level_of(texel[3]) << 24U;
   for (std::size_t k = 0; k < 3; ++k) {
-    out |= (kind == TexelKind::kColor ? level_of_light(texel[k] / texel[4]) : level_of(texel[k])) << 8U * k;
+    out |= (is_color(kind) ? level_of_light(texel[k] / texel[4]) : level_of(texel[k])) << 8U * k;
   }
   return out;
 }

@@ -12,10 +12,15 @@ namespace meshlode::app {
 
 /// What texels mean.
 enum class TexelKind : std::uint8_t {
-  kColor,   ///< sRGB: averaged as light, and by alpha
-  kNormal,  ///< directions: averaged, then of length 1 again
-  kData,    ///< each channel for itself
+  kColor,        ///< sRGB: averaged as light, and by alpha
+  kOpaqueColor,  ///< the same where nothing asks for alpha: it has no weight
+  kNormal,       ///< directions: averaged, then of length 1 again
+  kData,         ///< each channel for itself
 };
+
+[[nodiscard]] constexpr bool is_color(TexelKind kind) {
+  return kind == TexelKind::kColor || kind == TexelKind::kOpaqueColor;
+}
 
 /// So that the longer side has `longest` texels at most, the other in proportion and at least 1. Not larger than it is.
 [[nodiscard]] std::pair<std::uint32_t, std::uint32_t> fit_size(std::uint32_t width, std::uint32_t height,

@@ -82,6 +82,58 @@ TEST(ConvertImages, ColoursAreLossyAndAllElseIsNot) {
   }
 }
 
+/// Red where it is transparent, blue where it is opaque, by columns.
+std::vector<std::uint8_t> hidden_red() {
+  std::vector<std::uint8_t> pixels;
+  for (std::uint32_t i = 0; i < 64 * 64; ++i) {
+    const bool is_red = i % 2 == 0;
+    pixels.insert(pixels.end(),
+                  {std::uint8_t(is_red ? 255 : 0), 0, std::uint8_t(is_red ? 0 : 255), std::uint8_t(is_red ? 0 : 255)});
+  }
+  return test::make_png(64, 64, {6, 8}, pixels);
+}
+
+TEST(ConvertImages, AlphaHasAWeightOnlyWhereAMaterialReadsIt) {
+  using scene::AlphaMode, scene::TextureRole;
+  const auto texel_of = [](const std::vector<std::pair<TextureRole, AlphaMode>>& uses) {
+    scene::Scene scene = scene_of({hidden_red()}, {});
+    scene.materials.clear();
+    for (const auto& [role, mode] : uses) {
+      scene::SceneMaterial& material = scene.materials.emplace_back();
+      material.alpha_mode = mode;
+      material.textures.emplace_back().role = role;
+      material.textures[0].blob = 0;
+    }
+    const auto images = ImageConverter(kPlenty).convert(scene, choice_of("resize:16"));
+    return draw::decode_image(images->at(0).bytes)->texels.at(5);
+  };
+  constexpr std::uint32_t kPurple = 188U | 188U << 16U | 128U << 24U, kBlue = 255U << 16U | 128U << 24U;
+  EXPECT_EQ(texel_of({{TextureRole::kBaseColor, AlphaMode::kOpaque}}), kPurple);
+  EXPECT_EQ(texel_of({{TextureRole::kBaseColor, AlphaMode::kMask}}), kBlue);
+  EXPECT_EQ(texel_of({{TextureRole::kBaseColor, AlphaMode::kOpaque}, {TextureRole::kBaseColor, AlphaMode::kBlend}}),
+            kBlue);
+  EXPECT_EQ(texel_of({{TextureRole::kEmissive, AlphaMode::kMask}}), kPurple) << "emission has no alpha";
+}
+
+TEST(ConvertImages, EveryImageOfATextureHasItsRole) {
+  scene::Scene scene = scene_of({png(64), test::make_webp(64, 64, true, pixels_of(64, 4)), png(64)}, {});
+  scene::TextureUse& use = scene.materials[0].textures.emplace_back();
+  use.role = scene::TextureRole::kBaseColor;
+  use.texture = 1;
+  use.blob = 0;
+  scene.document = R"({"textures": [{"source": 2}, {"source": 0, "extensions": {"EXT_texture_webp": {"source": 1}}}],
+                       "images": [{"blob": 0}, {"blob": 1}, {"blob": 2}, {"blob": 9}]})";
+  const auto images = ImageConverter(kPlenty).convert(scene, choice_of("resize:48"));
+  ASSERT_TRUE(images);
+  const auto fallback = draw::decode_image((*images)[0].bytes), webp = draw::decode_image((*images)[1].bytes),
+             other = draw::decode_image((*images)[2].bytes);
+  ASSERT_TRUE(fallback && webp && other);
+  EXPECT_GT(psnr(*webp, *fallback), 25.0);
+  const std::vector<std::uint8_t>& bytes = (*images)[1].bytes;
+  EXPECT_NE(std::string(bytes.begin() + 12, bytes.begin() + 16), "VP8L") << "a colour is lossy";
+  EXPECT_NE(other->texels, fallback->texels) << "the third is data";
+}
+
 TEST(ConvertImages, FewerTexelsKeepTheFormat) {
   const auto jpeg = test::make_jpeg(64, 64, 3, false, pixels_of(64, 3));
   const auto webp = test::make_webp(64, 64, true, pixels_of(64, 4));
