@@ -29,6 +29,10 @@ namespace {
 /// Of a JPEG that stays one, as other programs save them when they are asked for high quality.
 constexpr int kJpegQuality = 90;
 
+/// Colours with so few texels a side are swatches, whose neighbours have nothing in common: WebP has half as many
+/// samples of chroma as texels, and 8x8 swatches were off by 205 of 255.
+constexpr std::uint32_t kMostSwatchSide = 32;
+
 enum class FileKind : std::uint8_t { kPng, kJpeg, kWebp };
 constexpr std::array<const char*, 3> kMimeTypes{"image/png", "image/jpeg", "image/webp"};
 constexpr std::array<const char*, 3> kNames{"PNG", "JPEG", "WebP"};
@@ -92,8 +96,12 @@ struct ImageTask {
   std::size_t blob = 0;
   FileKind kind{};
   std::uint32_t width = 0, height = 0;  ///< afterwards
+  TexelKind texels{};
   bool is_smaller = false;
+  bool may_be_webp = false;
   std::uint64_t bytes = 0;  ///< that the work takes
+
+  [[nodiscard]] bool may_be_lossy() const { return is_color(texels) && std::min(width, height) > kMostSwatchSide; }
 };
 
 struct EncodedImage {
@@ -102,24 +110,28 @@ struct EncodedImage {
 };
 
 /// The smallest of what the choice allows.
-Result<EncodedImage> encode_smallest(const draw::DecodedImage& image, const ImageTask& task, TexelKind texels,
+Result<EncodedImage> encode_smallest(draw::DecodedImage& image, const ImageTask& task,
                                      const builder::TextureChoice& choice) {
   EncodedImage best;
   const auto take = [&](std::vector<std::uint8_t> bytes, FileKind kind) {
     if (best.bytes.empty() || bytes.size() < best.bytes.size()) best = {std::move(bytes), kind};
   };
-  const bool has_webp = choice.webp_quality != 0 || task.kind == FileKind::kWebp;
-  if (has_webp) {
+  // Flat colours and drawings take fewer bytes without loss. What was lossy before does not.
+  if (task.may_be_webp && (!task.may_be_lossy() || task.kind == FileKind::kPng)) {
+    TRY_LET(webp, encode_webp_file(image, 0));
+    take(std::move(*webp), FileKind::kWebp);
+  }
+  if (task.may_be_webp && task.may_be_lossy()) {
     const std::uint32_t quality = choice.webp_quality != 0 ? choice.webp_quality : builder::kUsualWebpQuality;
-    TRY_LET(webp, encode_webp_file(image, is_color(texels) ? quality : 0));
+    TRY_LET(webp, encode_webp_file(image, quality));
     take(std::move(*webp), FileKind::kWebp);
   }
   // Of what was lossy before, lossless data is no smaller: it may stay what it was.
-  if (task.is_smaller && task.kind == FileKind::kJpeg && (!has_webp || !is_color(texels))) {
+  if (task.is_smaller && task.kind == FileKind::kJpeg && (!task.may_be_webp || !task.may_be_lossy())) {
     TRY_LET(jpeg, encode_jpeg_file(image, kJpegQuality));
     take(std::move(*jpeg), FileKind::kJpeg);
   }
-  if (task.kind == FileKind::kPng && !has_webp) {
+  if (task.kind == FileKind::kPng && !task.may_be_webp) {
     TRY_LET(png, encode_png_file(image));
     take(std::move(*png), FileKind::kPng);
   }
@@ -133,7 +145,7 @@ std::string describe_image(FileKind kind, std::uint32_t width, std::uint32_t hei
   return text;
 }
 
-Result<builder::ConvertedImage> convert_one(const scene::SceneBlob& blob, const ImageTask& task, TexelKind texels,
+Result<builder::ConvertedImage> convert_one(const scene::SceneBlob& blob, const ImageTask& task,
                                             const builder::TextureChoice& choice) {
   builder::ConvertedImage out;
   Result<draw::DecodedImage> decoded = draw::decode_image(blob.bytes);
@@ -142,13 +154,16 @@ Result<builder::ConvertedImage> convert_one(const scene::SceneBlob& blob, const 
     return out;
   }
   const std::string before = describe_image(task.kind, decoded->width, decoded->height, blob.bytes.size());
-  if (task.is_smaller) *decoded = shrink(*decoded, task.width, task.height, texels);
-  TRY_LET(best, encode_smallest(*decoded, task, texels, choice));
+  if (task.is_smaller) *decoded = shrink(*decoded, task.width, task.height, task.texels);
+  TRY_LET(best, encode_smallest(*decoded, task, choice));
   if (!task.is_smaller && best->bytes.size() >= blob.bytes.size()) {
     out.note = "stays as it is: " + before + ", and WebP would not be smaller";
     return out;
   }
   out.note = before + ", is stored as " + describe_image(best->kind, task.width, task.height, best->bytes.size());
+  constexpr std::size_t kBitDepth = 24;  // of a PNG's IHDR, which comes first
+  if (task.kind == FileKind::kPng && blob.bytes[kBitDepth] == 16) out.note += ", with 8 bits a channel instead of 16";
+  if (best->bytes.size() > blob.bytes.size()) out.note += ", which is more bytes for fewer texels";
   out.bytes = std::move(best->bytes);
   out.mime_type = kMimeTypes[static_cast<std::size_t>(best->kind)];
   return out;
@@ -170,18 +185,21 @@ Result<std::vector<builder::ConvertedImage>> ImageConverter::convert(const scene
       out[i].note = "stays as it is: " + header.error().detail;
       continue;
     }
-    ImageTask task{i, kind_of(blob.bytes), 0, 0, false, 0};
+    ImageTask task{i, kind_of(blob.bytes), 0, 0, kinds[i], false, choice.webp_quality != 0, 0};
     std::tie(task.width, task.height) = fit_size(header->width, header->height, choice.longest_side);
     task.is_smaller = task.width != header->width || task.height != header->height;
-    const bool becomes_webp = choice.webp_quality != 0 && task.kind != FileKind::kWebp;
-    if (!task.is_smaller && !becomes_webp) continue;
+    if (!task.is_smaller && (!task.may_be_webp || task.kind == FileKind::kWebp)) continue;
+    task.may_be_webp = task.may_be_webp || task.kind == FileKind::kWebp;
     if (choice.webp_quality != 0 && std::max(task.width, task.height) > kMostWebpSide) {
       out[i].note = "stays as it is: WebP has at most 16383 texels a side";
       continue;
     }
-    // The texels, what decodes them, and up to four times as much where they are encoded: libwebp's planes and hashes.
+    // The texels, what decodes them, and what encodes them: libwebp's planes and hashes. Its lossless encoder, which
+    // alpha goes through too, took 28 bytes a texel beside the texels (4096x4096 of noise).
+    const bool is_lossless = task.may_be_webp && (task.kind != FileKind::kJpeg || !task.may_be_lossy());
     const std::uint64_t texels = std::uint64_t{4} * header->width * header->height;
-    task.bytes = texels + std::max(header->decoder_bytes, std::uint64_t{16} * task.width * task.height);
+    const std::uint64_t encoder_bytes = std::uint64_t{is_lossless ? 28U : 16U} * task.width * task.height;
+    task.bytes = texels + std::max(header->decoder_bytes, encoder_bytes);
     if (task.bytes > max_decoded_) {
       return Error{ErrorCode::kUnsupported, "image " + std::to_string(blob.source_index),
                    "to convert it takes " + byte_size_text(task.bytes) + ", and --max-decoded allows " +
@@ -194,7 +212,7 @@ Result<std::vector<builder::ConvertedImage>> ImageConverter::convert(const scene
   const std::size_t at_once = std::max<std::size_t>(1, std::min<std::uint64_t>(thread_limit(), max_decoded_ / largest));
   parallel_for_each_in_order(tasks.size(), at_once, [&](std::size_t i) {
     const std::size_t blob = tasks[i].blob;
-    auto converted = convert_one(scene.blobs[blob], tasks[i], kinds[blob], choice);
+    auto converted = convert_one(scene.blobs[blob], tasks[i], choice);
     if (converted) {
       out[blob] = std::move(*converted);
     } else {

@@ -3,8 +3,8 @@
 //
 //   decode (draw/textures) → shrink, by what the texels mean (shrink.h) → encode, and the smallest stays
 //
-// Colours are what a base colour or emission is read from: lossy as WebP and JPEG. All else keeps each channel of each
-// texel: as WebP without loss, for its chroma has half the samples.
+// Colours are what a base colour or emission is read from: lossy as WebP and JPEG, unless they are small or flat. All
+// else keeps each channel of each texel: as WebP without loss, for its chroma has half the samples.
 #pragma once
 
 #include <cstdint>

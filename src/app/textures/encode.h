@@ -17,8 +17,8 @@ constexpr std::uint32_t kMostWebpSide = 16383;  ///< WEBP_MAX_DIMENSION
 [[nodiscard]] Result<std::vector<std::uint8_t>> encode_png_file(const draw::DecodedImage& image);
 /// Without alpha, every channel with as many samples as texels. `quality`: 1 to 100.
 [[nodiscard]] Result<std::vector<std::uint8_t>> encode_jpeg_file(const draw::DecodedImage& image, int quality);
-/// `quality`: 1 to 100, 0: without loss. Colours below transparent texels stay. \pre sides of at most kMostWebpSide
-[[nodiscard]] Result<std::vector<std::uint8_t>> encode_webp_file(const draw::DecodedImage& image,
-                                                                 std::uint32_t quality);
+/// `quality`: 1 to 100, 0: without loss. Colours below transparent texels stay. The image is in use meanwhile, and the
+/// same afterwards. \pre sides of at most kMostWebpSide
+[[nodiscard]] Result<std::vector<std::uint8_t>> encode_webp_file(draw::DecodedImage& image, std::uint32_t quality);
 
 }  // namespace meshlode::app

@@ -82,6 +82,30 @@ TEST(ConvertImages, ColoursAreLossyAndAllElseIsNot) {
   }
 }
 
+TEST(ConvertImages, FlatColoursAndSwatchesLoseNothing) {
+  std::mt19937 random(3);
+  std::vector<std::uint32_t> colors(16), swatches(256);
+  for (std::uint32_t& c : colors) c = static_cast<std::uint32_t>(random());
+  for (std::uint32_t& c : swatches) c = colors[random() % colors.size()];
+  const auto flat = [&](std::uint32_t side, std::uint32_t swatch) {
+    std::vector<std::uint8_t> pixels;
+    for (std::uint32_t i = 0; i < side * side; ++i) {
+      const std::uint32_t c = swatches[i / side / swatch * 16 + i % side / swatch];
+      for (std::uint32_t k = 0; k < 3; ++k) pixels.push_back(static_cast<std::uint8_t>(c >> 8U * k));
+    }
+    return test::make_png(side, side, {2, 8}, pixels);
+  };
+  const auto scene =
+      scene_of({flat(256, 16), flat(16, 1), flat(8, 1)},
+               {scene::TextureRole::kBaseColor, scene::TextureRole::kBaseColor, scene::TextureRole::kEmissive});
+  const auto images = ImageConverter(kPlenty).convert(scene, choice_of("webp:50"));
+  ASSERT_TRUE(images);
+  for (std::size_t i = 0; i < images->size(); ++i) {
+    ASSERT_FALSE((*images)[i].bytes.empty()) << (*images)[i].note;
+    EXPECT_EQ(draw::decode_image((*images)[i].bytes)->texels, draw::decode_image(scene.blobs[i].bytes)->texels) << i;
+  }
+}
+
 /// Red where it is transparent, blue where it is opaque, by columns.
 std::vector<std::uint8_t> hidden_red() {
   std::vector<std::uint8_t> pixels;
@@ -179,6 +203,36 @@ TEST(ConvertImages, MoreThanMayBeDecodedIsAnError) {
   ASSERT_FALSE(images);
   EXPECT_EQ(images.error().code, ErrorCode::kUnsupported);
   EXPECT_NE(images.error().message().find("image 0"), std::string::npos);
+}
+
+TEST(ConvertImages, EncodersThatKeepEveryBitTakeMoreMemory) {
+  constexpr std::uint64_t kTexels = 64 * 64;
+  const auto fits = [](std::vector<std::uint8_t> image, const char* words, std::uint64_t most) {
+    return ImageConverter(most)
+        .convert(scene_of({std::move(image)}, {scene::TextureRole::kBaseColor}), choice_of(words))
+        .ok();
+  };
+  const auto jpeg = test::make_jpeg(64, 64, 3, false, pixels_of(64, 3));
+  EXPECT_TRUE(fits(png(64), "webp", 32 * kTexels));
+  EXPECT_FALSE(fits(png(64), "webp", 32 * kTexels - 1));
+  EXPECT_TRUE(fits(jpeg, "webp", 20 * kTexels)) << "lossy, and without alpha";
+  EXPECT_FALSE(fits(jpeg, "webp", 20 * kTexels - 1));
+}
+
+TEST(ConvertImages, NotesNameWhatIsLost) {
+  std::mt19937 random(5);
+  std::vector<std::uint8_t> deep(2 * 64 * 64), bits(64 * 64 / 8);  // a bit a texel, of which the means are no bits
+  for (std::uint8_t& byte : deep) byte = static_cast<std::uint8_t>(random());
+  for (std::uint8_t& byte : bits) byte = static_cast<std::uint8_t>(random());
+  const auto scene =
+      scene_of({test::make_png(64, 64, {0, 16}, deep), test::make_png(64, 64, {0, 1}, bits), png(64)}, {});
+  const auto images = ImageConverter(kPlenty).convert(scene, choice_of("resize:62"));
+  ASSERT_TRUE(images);
+  const auto has = [&](std::size_t i, const char* words) { return (*images)[i].note.find(words) != std::string::npos; };
+  EXPECT_TRUE(has(0, "8 bits a channel instead of 16")) << (*images)[0].note;
+  ASSERT_GT((*images)[1].bytes.size(), scene.blobs[1].bytes.size());
+  EXPECT_TRUE(has(1, "more bytes for fewer texels")) << (*images)[1].note;
+  EXPECT_FALSE(has(2, "8 bits") || has(2, "more bytes")) << (*images)[2].note;
 }
 
 TEST(ConvertImages, AreTheSameForAnyNumberOfThreads) {
