@@ -17,6 +17,7 @@
 
 #include "app/batch/jobs/find_inputs.h"
 #include "app/batch/jobs/job_result.h"
+#include "base/hash.h"
 #include "base/json_writer.h"
 #include "options.h"
 
@@ -53,6 +54,8 @@ struct BulkInput {
   /// A file of a manifest that no asset was made of, and why.
   int exit_code = 0;
   std::string error = {};
+  std::optional<Hash128> asset_hash = {};   ///< what a manifest says that the asset `path` is
+  std::optional<Hash128> source_hash = {};  ///< of compare: the same of the older asset, `source`
 };
 
 struct BulkWords {

@@ -23,7 +23,10 @@ namespace {
 BulkInput input_of(const app::JobResult& r, ManifestSide side) {
   if (side == ManifestSide::kScenes) return {r.job.input.string()};
   BulkInput input{r.job.output.string(), r.job.input.string()};
-  if (r.has_asset()) return input;
+  if (r.has_asset()) {
+    input.asset_hash = r.asset_hash;
+    return input;
+  }
   input.exit_code = r.exit_code != 0 ? r.exit_code : static_cast<int>(ErrorCode::kIo);
   input.error = r.job.output.string() + ": no asset was made: " + (r.error.empty() ? "skipped" : r.error);
   return input;

@@ -3,11 +3,12 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <optional>
+#include <map>
 #include <set>
 #include <utility>
 
 #include "app/batch/shard/read_manifest.h"
+#include "app/compare/stored_bytes.h"
 #include "base/file.h"
 #include "base/try.h"
 #include "file_kind.h"
@@ -54,11 +55,11 @@ std::vector<std::optional<std::size_t>> match_results(const std::vector<app::Job
   return match;
 }
 
-/// The asset's path; empty where the batch made none, and then why in `input`.
-std::string asset_of(const app::JobResult& r, BulkInput& input, std::map<std::string, Hash128>& hashes) {
+/// The asset's path, and its hash; where the batch made none, why in `input`.
+std::string asset_of(const app::JobResult& r, BulkInput& input, std::optional<Hash128>& hash) {
   const std::string path = r.job.output.string();
   if (r.has_asset()) {
-    hashes.emplace(path, r.asset_hash);
+    hash = r.asset_hash;
     return path;
   }
   input.exit_code = std::max(input.exit_code, r.exit_code != 0 ? r.exit_code : static_cast<int>(ErrorCode::kIo));
@@ -68,28 +69,43 @@ std::string asset_of(const app::JobResult& r, BulkInput& input, std::map<std::st
 
 }  // namespace
 
-Result<ComparePairs> pair_folders(const std::string& before, const std::string& after) {
+Result<run::Asset> open_sound(const std::string& path, std::uint64_t max_decoded,
+                              const std::optional<Hash128>& listed) {
+  Result<run::Asset> asset = open_asset(path, max_decoded);
+  if (!asset) return asset;
+  if (listed && hash128(asset->bytes()) != *listed) {
+    return Error{ErrorCode::kCheckFailed, path, "is not the asset that the manifest lists"};
+  }
+  if (const Status sound = app::check_stored_bytes(*asset); !sound) {
+    Error error = sound.error();
+    error.where = path + ": " + error.where;
+    return error;
+  }
+  return asset;
+}
+
+Result<std::vector<BulkInput>> pair_folders(const std::string& before, const std::string& after) {
   TRY_LET(old_files, app::find_inputs(before, app::InputKind::kAssets));
   TRY_LET(new_files, app::find_inputs(after, app::InputKind::kAssets));
   std::set<fs::path> left;
   for (const fs::path& file : old_files->files) left.insert(file.lexically_relative(before));
-  ComparePairs pairs;
+  std::vector<BulkInput> pairs;
   for (const fs::path& file : new_files->files) {
     const fs::path inner = file.lexically_relative(after);
-    pairs.files.push_back({file.string(), left.erase(inner) > 0 ? (before / inner).string() : "", after, true});
+    pairs.push_back({file.string(), left.erase(inner) > 0 ? (before / inner).string() : "", after, true});
   }
-  for (const fs::path& inner : left) pairs.files.push_back({"", (before / inner).string(), before, true});
-  if (!pairs.files.empty()) return pairs;
+  for (const fs::path& inner : left) pairs.push_back({"", (before / inner).string(), before, true});
+  if (!pairs.empty()) return pairs;
   return Error{ErrorCode::kIo, after, "no asset in it, and none in " + before};
 }
 
-Result<ComparePairs> pair_manifests(const std::string& before, const std::string& after) {
+Result<std::vector<BulkInput>> pair_manifests(const std::string& before, const std::string& after) {
   TRY_LET(old_manifest, read_kept_manifest(before));
   TRY_LET(new_manifest, read_kept_manifest(after));
   const std::vector<app::JobResult>& older = old_manifest->results;
   const std::string new_base = shared_folder(new_manifest->results), old_base = shared_folder(older);
   const auto match = match_results(older, new_manifest->results);
-  ComparePairs pairs;
+  std::vector<BulkInput> pairs;
   std::set<std::size_t> left;
   for (std::size_t i = 0; i < older.size(); ++i) left.insert(i);
   for (std::size_t i = 0; i < match.size(); ++i) {
@@ -98,19 +114,19 @@ Result<ComparePairs> pair_manifests(const std::string& before, const std::string
     if (match[i]) {
       left.erase(*match[i]);
       // An older failure is no loss: the asset is new.
-      if (older[*match[i]].has_asset()) input.source = asset_of(older[*match[i]], input, pairs.old_hashes);
+      if (older[*match[i]].has_asset()) input.source = asset_of(older[*match[i]], input, input.source_hash);
     }
-    input.path = asset_of(new_manifest->results[i], input, pairs.new_hashes);
-    pairs.files.push_back(std::move(input));
+    input.path = asset_of(new_manifest->results[i], input, input.asset_hash);
+    pairs.push_back(std::move(input));
   }
   for (const std::size_t i : left) {
     if (!older[i].has_asset()) continue;
     BulkInput input;
     input.base = old_base;
-    input.source = asset_of(older[i], input, pairs.old_hashes);
-    pairs.files.push_back(std::move(input));
+    input.source = asset_of(older[i], input, input.source_hash);
+    pairs.push_back(std::move(input));
   }
-  if (!pairs.files.empty()) return pairs;
+  if (!pairs.empty()) return pairs;
   return Error{ErrorCode::kIo, after, "no asset in it, and none in " + before};
 }
 

@@ -11,8 +11,8 @@
 #include "base/append_format.h"
 #include "base/file.h"
 #include "base/try.h"
+#include "compare_pairs.h"
 #include "draw/textures/image.h"
-#include "file_kind.h"
 #include "outputs.h"
 
 namespace meshlode::cli {
@@ -70,7 +70,7 @@ FileOutcome compare_with_golden(const BulkInput& input, const GoldenCommand& com
     if (!command.golden.is_updated) out.fail({ErrorCode::kCheckFailed, input.source, "has no asset"});
     return done();
   }
-  const Result<run::Asset> asset = open_asset(input.path, command.views.max_decoded);
+  const Result<run::Asset> asset = open_sound(input.path, command.views.max_decoded, input.asset_hash);
   if (!asset) return fail(asset.error());
   page.after = asset->bytes().size();
   const auto cameras = make_cameras(command.views, *asset);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
-#include <map>
 #include <optional>
 #include <string>
 #include <system_error>
@@ -11,10 +10,8 @@
 #include <vector>
 
 #include "app/compare/compare.h"
-#include "app/compare/stored_bytes.h"
 #include "base/append_format.h"
 #include "base/file.h"
-#include "base/hash.h"
 #include "base/printable.h"
 #include "base/try.h"
 #include "budget_options.h"
@@ -22,7 +19,6 @@
 #include "compare_folder.h"
 #include "compare_pairs.h"
 #include "draw_views.h"
-#include "file_kind.h"
 #include "golden.h"
 #include "options.h"
 #include "outputs.h"
@@ -57,27 +53,9 @@ Error in_picture(Error error) {
   return error;
 }
 
-/// Errors: those of opening; kInvalid for damaged pages and images, which opening does not look at; kCheckFailed for
-/// another file than a manifest lists.
-Result<run::Asset> open_sound(const std::string& path, std::uint64_t max_decoded,
-                              const std::map<std::string, Hash128>& hashes) {
-  Result<run::Asset> asset = open_asset(path, max_decoded);
-  if (!asset) return asset;
-  if (const auto hash = hashes.find(path); hash != hashes.end() && hash128(asset->bytes()) != hash->second) {
-    return Error{ErrorCode::kCheckFailed, path, "is not the asset that the manifest lists"};
-  }
-  if (const Status sound = app::check_stored_bytes(*asset); !sound) {
-    Error error = sound.error();
-    error.where = path + ": " + error.where;
-    return error;
-  }
-  return asset;
-}
-
 struct CompareCommand {
   CompareOptions options;
   std::vector<app::Condition> budget;
-  ComparePairs pairs;
 };
 
 /// The row of several pairs.
@@ -120,9 +98,9 @@ FileOutcome compare_pair(const BulkInput& input, const CompareCommand& command, 
     folder.add(input, out, std::move(page));
     return std::move(out);
   };
-  const Result<run::Asset> before = open_sound(input.source, options.views.max_decoded, command.pairs.old_hashes);
+  const Result<run::Asset> before = open_sound(input.source, options.views.max_decoded, input.source_hash);
   if (!before) return fail(before.error());
-  const Result<run::Asset> after = open_sound(input.path, options.views.max_decoded, command.pairs.new_hashes);
+  const Result<run::Asset> after = open_sound(input.path, options.views.max_decoded, input.asset_hash);
   if (!after) return fail(after.error());
   app::AssetComparison comparison = app::compare_assets(*before, *after);
   comparison.before.file = input.source;
@@ -167,7 +145,7 @@ FileOutcome compare_pair(const BulkInput& input, const CompareCommand& command, 
   return out;
 }
 
-/// A pair, or an asset that has no other: new ones are told of, lost ones fail where there are limits.
+/// A pair, or an asset that has no other: new ones are told of, and are sound; lost ones fail where there are limits.
 FileOutcome compare_or_tell(const BulkInput& input, const CompareCommand& command, CompareFolder& folder) {
   if (!input.path.empty() && !input.source.empty()) return compare_pair(input, command, folder);
   FileOutcome out;
@@ -180,6 +158,8 @@ FileOutcome compare_or_tell(const BulkInput& input, const CompareCommand& comman
     out.cells = {"-", bytes, "new"};
     if (!error) page.after = size;
     page.verdict = "new";
+    const auto asset = open_sound(path, command.options.views.max_decoded, input.asset_hash);
+    if (!asset) out.fail(asset.error());
   } else {
     out.cells = {bytes, "-", "gone"};
     if (!error) page.before = size;
@@ -310,8 +290,7 @@ int run_compare(const Verb& verb, std::span<char* const> args) {
   }
   auto pairs = are_folders ? pair_folders(before, after) : pair_manifests(before, after);
   if (!pairs) return print_error(pairs.error());
-  command.pairs = std::move(*pairs);
-  std::vector<BulkInput>& files = command.pairs.files;
+  std::vector<BulkInput>& files = *pairs;
   if (const Status named = name_places(files); !named) return print_error(named.error());
   for (const BulkInput& input : files) {
     for (const std::string& path : {input.path, input.source}) {

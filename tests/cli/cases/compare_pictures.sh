@@ -71,6 +71,22 @@ run compare moved.json new.json
 cp keep.lode out-new/deep/same.lode
 run compare old.json old.json
 run compare old.json out-new
+# An asset without an older one is opened too: one with a damaged page, one that is gone, and another than its manifest
+# lists.
+code build -q new/deep/same.gltf -O out-one --manifest one.json
+cat >damage.py <<'END'
+import sys
+data = bytearray(open(sys.argv[1], "rb").read()); data[-20] ^= 1; open(sys.argv[2], "wb").write(data)
+END
+mkdir part; cp out-new/deep/same.lode part/
+run compare out-one part --quiet; python3 damage.py out-new/deep/vertex.lode part/vertex.lode
+run compare out-one part
+run compare one.json new.json --quiet
+mv out-new/deep/vertex.lode keep.lode; cp out-new/deep/same.lode out-new/deep/material.lode
+run compare one.json new.json
+run compare --golden pictures --manifest new.json --update --size 32x32 --quiet
+cp keep.lode out-new/deep/vertex.lode; code build -q new/deep/material.gltf -o out-new/deep/material.lode
+run compare --golden pictures part --update --size 32x32 --quiet
 # Golden pictures.
 run compare --golden golden out-old --update $CAMERA --camera 0,0,9,4,4,0
 (cd golden && find . -type f | LC_ALL=C sort)
