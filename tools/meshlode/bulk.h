@@ -72,6 +72,7 @@ enum class ManifestSide : std::uint8_t { kAssets, kScenes };
 
 struct BulkInputs {
   bool is_single = false;  ///< one file by its name: the verb says what it says of one file
+  bool is_whole = true;    ///< folders and whole batches: no file is left out by a name, a pattern or a shard
   std::vector<BulkInput> files;
 };
 

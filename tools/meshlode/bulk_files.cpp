@@ -128,7 +128,9 @@ Result<BulkInputs> find_bulk_inputs(const Verb& verb, const BulkWords& words, ap
       is_named && !std::filesystem::is_directory(words.files.front(), error) && !app::is_pattern(words.files.front());
   for (const std::string& word : words.files) {
     TRY_LET(found, app::find_inputs(word, kind));
-    const bool is_found = std::filesystem::is_directory(word, error) || app::is_pattern(word);
+    const bool is_folder = std::filesystem::is_directory(word, error);
+    const bool is_found = is_folder || app::is_pattern(word);
+    inputs.is_whole = inputs.is_whole && is_folder;
     for (const std::filesystem::path& file : found->files) {
       inputs.files.push_back({file.string(), {}, found->base.string(), is_found});
     }
@@ -137,6 +139,7 @@ Result<BulkInputs> find_bulk_inputs(const Verb& verb, const BulkWords& words, ap
     TRY(check_is_manifest(words.manifest));
     TRY_LET(manifest, app::read_manifest(words.manifest));
     if (const auto id = find_file_id(words.manifest)) output_files().keep(*id);
+    inputs.is_whole = inputs.is_whole && manifest->is_complete && !manifest->shard;
     const std::string base = shared_folder(manifest->results);
     for (const app::JobResult& r : manifest->results) {
       inputs.files.push_back(input_of(r, side));

@@ -26,6 +26,14 @@ std::string golden_path(const GoldenCommand& command, const std::string& place, 
   return (fs::path(command.golden.folder) / name).string();
 }
 
+/// PLACE.CAMERA.png: other files that lie there are nobody's.
+bool is_picture_name(const fs::path& path) {
+  const fs::path stem = path.stem();
+  const std::string camera = stem.extension().string();
+  return path.extension() == ".png" && camera.size() > 1 && camera[1] != '0' &&
+         camera.find_first_not_of("0123456789", 1) == std::string::npos;
+}
+
 Result<draw::Image> read_golden(const std::string& path, const draw::Image& wanted) {
   std::error_code error;
   if (!fs::exists(path, error)) {
@@ -149,7 +157,7 @@ Status add_orphans(const GoldenCommand& command, std::vector<BulkInput>& files) 
   auto entry = fs::recursive_directory_iterator(command.golden.folder, error);
   for (; !error && entry != fs::recursive_directory_iterator(); entry.increment(error)) {
     const fs::path& path = entry->path();
-    if (path.extension() == ".png" && !known.contains(path)) orphans.insert(path);
+    if (is_picture_name(path) && !known.contains(path)) orphans.insert(path);
   }
   if (error && !command.golden.is_updated) return Error{ErrorCode::kIo, command.golden.folder, error.message()};
   for (const fs::path& path : orphans) {

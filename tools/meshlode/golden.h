@@ -33,8 +33,8 @@ struct GoldenCommand {
 [[nodiscard]] FileOutcome compare_with_golden(const BulkInput& input, const GoldenCommand& command,
                                               CompareFolder& folder);
 
-/// Adds to the files of whole folders the stored pictures that none of them has: with an empty `path`, and the
-/// picture as `source`. Error: kIo.
+/// Adds to the files of whole folders the stored pictures, PLACE.CAMERA.png, that none of them has: with an empty
+/// `path`, and the picture as `source`. Error: kIo.
 [[nodiscard]] Status add_orphans(const GoldenCommand& command, std::vector<BulkInput>& files);
 
 }  // namespace meshlode::cli

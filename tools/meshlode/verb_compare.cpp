@@ -12,6 +12,7 @@
 #include "app/compare/compare.h"
 #include "base/append_format.h"
 #include "base/file.h"
+#include "base/output_files.h"
 #include "base/printable.h"
 #include "base/try.h"
 #include "budget_options.h"
@@ -196,9 +197,7 @@ int run_golden(const Verb& verb, const CompareOptions& options, BulkWords& bulk)
     const JobLimit limit(bulk.jobs);
     exit_code = compare_with_golden(inputs->files.front(), command, folder).print();
   } else {
-    const bool is_whole =
-        std::ranges::all_of(inputs->files, [](const BulkInput& input) { return !input.base.empty(); });
-    if (is_whole) {
+    if (inputs->is_whole) {
       if (const Status added = add_orphans(command, inputs->files); !added) return print_error(added.error());
     }
     exit_code = run_bulk({"compare",
@@ -209,6 +208,17 @@ int run_golden(const Verb& verb, const CompareOptions& options, BulkWords& bulk)
   return std::max(exit_code, folder.finish(options.golden.folder));
 }
 
+/// Whether `inner` is `outer` or below it, existing or not.
+bool is_within(const std::filesystem::path& inner, const std::filesystem::path& outer) {
+  std::error_code error;
+  std::filesystem::path folder = std::filesystem::weakly_canonical(std::filesystem::absolute(inner, error), error);
+  while (!is_same_place(folder, outer)) {
+    if (!folder.has_relative_path()) return false;
+    folder = folder.parent_path();
+  }
+  return true;
+}
+
 Status check_options(const CompareOptions& options) {
   const auto usage = [](const char* option, const char* detail) { return Error{ErrorCode::kUsage, option, detail}; };
   const bool is_golden = !options.golden.folder.empty();
@@ -216,7 +226,11 @@ Status check_options(const CompareOptions& options) {
   if (options.golden.is_updated && (options.fail_if || !options.folder.empty())) {
     return usage("--update", "compares nothing: give neither --fail-if nor -O");
   }
-  if (is_golden) return Ok{};
+  if (is_golden) {
+    // What is written there would be taken for golden pictures.
+    const bool is_inside = !options.folder.empty() && is_within(options.folder, options.golden.folder);
+    return is_inside ? usage("-O", "is the folder of --golden or below it; name another") : Status(Ok{});
+  }
   if (!options.is_rendered && is_camera_given(options.views)) {
     return usage("", "--camera, --ortho, --size and --pixel-error need --render");
   }
@@ -316,8 +330,9 @@ const Verb kCompareVerb{
     "With --fail-if the changes become limits that a pipeline can check.\n\n"
     "Two folders are compared asset by asset, by their places below them, two manifests by their scenes, with a row "
     "each. An asset that only the older one has fails where there are limits.\n\n"
-    "With --golden assets are compared with pictures that --update wrote before; a picture that no asset of a folder "
-    "has fails.",
+    "With --golden assets are compared with pictures that --update wrote before. Where whole folders or the manifest "
+    "of "
+    "a whole batch are given, a picture PLACE.N.png that none of their assets has fails.",
     "meshlode compare old.lode new.lode\n"
     "  meshlode compare old.lode new.lode --fail-if 'file_bytes.ratio>1.02'\n"
     "  meshlode compare released/ out/ --render -O changes --fail-if 'flip.mean>0.02' --junit compare.xml\n"

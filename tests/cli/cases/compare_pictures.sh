@@ -100,6 +100,17 @@ json bulk compare --golden golden out-new --format json $CAMERA --camera 0,0,9,4
 run compare --golden golden --manifest new.json --quiet $CAMERA --camera 0,0,9,4,4,0 --fail-if 'flip.mean>1'
 "$MESHLODE" compare --golden golden out-new $CAMERA --camera 0,0,9,4,4,0 --jobs 1 >one.txt 2>&1
 "$MESHLODE" compare --golden golden out-new $CAMERA --camera 0,0,9,4,4,0 --jobs 5 >five.txt 2>&1; cmp one.txt five.txt
+# Assets that a pattern or a name leaves out are not missed, nor are other files there; -O stays away from it.
+cp golden/deep/same.1.png golden/logo.png; cp golden/deep/same.1.png golden/deep/same.1.flip.png
+set -f
+for words in 'out-old/deep/[st]*.lode' 'out-old/deep/same.lode out-old/deep/texture.lode'; do
+  run compare --golden golden/deep $words --quiet $CAMERA --camera 0,0,9,4,4,0
+done
+set +f
+run compare --golden golden out-old --quiet $CAMERA --camera 0,0,9,4,4,0
+code build -q old -O out-part --manifest shard.json --shard 1/2
+run compare --golden golden/deep --manifest shard.json --quiet $CAMERA --camera 0,0,9,4,4,0
+ln -s golden link; for folder in golden golden/ ./golden/deep/new link/x; do run compare --golden golden out-old -O $folder; done
 # A picture of nothing, none, another size, and one that is broken.
 rm out-old/deep/same.lode golden/deep/vertex.2.png; head -c 100 golden/deep/texture.1.png >cut.png; mv cut.png golden/deep/texture.1.png
 run compare --golden golden out-old $CAMERA --camera 0,0,9,4,4,0
