@@ -68,6 +68,10 @@ std::string gpu_text(const std::optional<std::uint64_t>& bytes) {
   return bytes ? byte_size_text(*bytes) + " on a GPU" : "not decoded here";
 }
 
+std::string size_text(const std::optional<ImageSize>& size) {
+  return size ? std::to_string(size->width) + "x" + std::to_string(size->height) : "size not known";
+}
+
 void add_images(std::string& out, const std::vector<PlannedImage>& images) {
   if (images.empty()) return;
   std::uint64_t bytes = 0, gpu = 0, stored_gpu = 0;
@@ -82,11 +86,11 @@ void add_images(std::string& out, const std::vector<PlannedImage>& images) {
   out += "\n";
   for (std::size_t i = 0; i < images.size() && i < kMaxRows; ++i) {
     const PlannedImage& image = images[i];
-    append_format(out, "  %u  %s: %s, %ux%u, %s, %s", image.source_index, printable(image.name, 80).c_str(),
-                  printable(image.mime_type, 40).c_str(), image.width, image.height,
+    append_format(out, "  %u  %s: %s, %s, %s, %s", image.source_index, printable(image.name, 80).c_str(),
+                  printable(image.mime_type, 40).c_str(), size_text(image.size).c_str(),
                   byte_size_text(image.bytes).c_str(), gpu_text(image.gpu_bytes).c_str());
     if (image.stored_gpu_bytes != image.gpu_bytes) {
-      append_format(out, "; stored as %ux%u, %s", image.stored_width, image.stored_height,
+      append_format(out, "; stored as %s, %s", size_text(image.stored_size).c_str(),
                     gpu_text(image.stored_gpu_bytes).c_str());
     }
     out += "\n";
@@ -94,13 +98,18 @@ void add_images(std::string& out, const std::vector<PlannedImage>& images) {
   add_more(out, images.size(), "images");
 }
 
-void write_optional_bytes(JsonWriter& json, const char* key, const std::optional<std::uint64_t>& bytes) {
+void write_optional(JsonWriter& json, const char* key, const std::optional<std::uint64_t>& number) {
   json.key(key);
-  if (bytes) {
-    json.value(*bytes);
+  if (number) {
+    json.value(*number);
   } else {
     json.null();
   }
+}
+
+void write_size(JsonWriter& json, const char* width, const char* height, const std::optional<ImageSize>& size) {
+  write_optional(json, width, size ? std::optional<std::uint64_t>(size->width) : std::nullopt);
+  write_optional(json, height, size ? std::optional<std::uint64_t>(size->height) : std::nullopt);
 }
 
 }  // namespace
@@ -175,12 +184,10 @@ void write_plan(JsonWriter& json, const ScenePlan& plan) {
     json.field("mime_type", image.mime_type);
     json.field("source_index", image.source_index);
     json.field("bytes", image.bytes);
-    json.field("width", image.width);
-    json.field("height", image.height);
-    write_optional_bytes(json, "gpu_bytes", image.gpu_bytes);
-    json.field("stored_width", image.stored_width);
-    json.field("stored_height", image.stored_height);
-    write_optional_bytes(json, "stored_gpu_bytes", image.stored_gpu_bytes);
+    write_size(json, "width", "height", image.size);
+    write_optional(json, "gpu_bytes", image.gpu_bytes);
+    write_size(json, "stored_width", "stored_height", image.stored_size);
+    write_optional(json, "stored_gpu_bytes", image.stored_gpu_bytes);
     json.end_object();
   }
   json.end_array();

@@ -6,12 +6,10 @@
 #include <cmath>
 #include <cstdio>
 #include <span>
-#include <tuple>
 #include <utility>
 
 #include "app/preview/estimate.h"
 #include "app/textures/shrink.h"
-#include "base/image_size.h"
 #include "base/parallel.h"
 #include "base/try.h"
 #include "builder/encode/encode.h"
@@ -22,6 +20,7 @@
 #include "builder/prepare/prepare.h"
 #include "builder/stage_options.h"
 #include "builder/survey.h"
+#include "draw/textures/image.h"
 
 namespace meshlode::app {
 
@@ -161,15 +160,13 @@ std::vector<PlannedImage> plan_images(const scene::Scene& scene, const builder::
     image.mime_type = blob.mime_type;
     image.source_index = blob.source_index;
     image.bytes = blob.bytes.size();
-    const auto size = read_image_size(blob.bytes);
-    if (!size) continue;
-    image.width = size->width;
-    image.height = size->height;
-    image.gpu_bytes = find_gpu_bytes(blob.bytes);
-    // What is not decoded keeps its size.
-    const std::uint32_t longest = image.gpu_bytes ? choice.longest_side : 0;
-    std::tie(image.stored_width, image.stored_height) = fit_size(size->width, size->height, longest);
-    if (image.gpu_bytes) image.stored_gpu_bytes = gpu_bytes_of({image.stored_width, image.stored_height});
+    image.size = image.stored_size = read_image_size(blob.bytes);
+    image.gpu_bytes = image.stored_gpu_bytes = find_gpu_bytes(blob.bytes);
+    const auto header = draw::read_image_header(blob.bytes);
+    if (!header) continue;  // what is not decoded keeps its size
+    const auto [width, height] = fit_size(header->width, header->height, choice.longest_side);
+    image.stored_size = ImageSize{width, height};
+    image.stored_gpu_bytes = gpu_bytes_of(*image.stored_size);
   }
   return images;
 }
@@ -187,7 +184,7 @@ Result<ScenePlan> plan_scene(const scene::Scene& scene, const builder::PipelineO
     plan.meshes.push_back(std::move(*mesh));
   }
   plan.images = plan_images(scene, options.textures);
-  plan.features = builder::list_features(scene);
+  plan.features = builder::list_features(scene, options.textures);
   const std::vector<builder::AggregateDecision> aggregates = builder::decide_aggregates(scene, options);
   const std::vector<builder::MeshGaps> gaps = builder::find_layers(scene, aggregates, options);
   for (std::size_t i = 0; i < scene.meshes.size(); ++i) {

@@ -10,6 +10,7 @@
 
 #include <meshlode/result.h>
 
+#include "base/image_size.h"
 #include "builder/options.h"
 #include "builder/plan/plan.h"
 #include "format/grid.h"
@@ -35,13 +36,13 @@ struct PlannedMesh {
   double bytes = 0.0;                        ///< estimated, of the decoded pages with their topology
 };
 
-/// An image of the scene, and what --textures makes of its size.
+/// An image of the scene, and what --textures makes of its size: what its head says, for nothing is decoded. A build
+/// keeps the size of one that is damaged behind it.
 struct PlannedImage {
   std::string name, mime_type;
   std::uint32_t source_index = 0;
   std::uint64_t bytes = 0;
-  std::uint32_t width = 0, height = 0;                       ///< 0: not known
-  std::uint32_t stored_width = 0, stored_height = 0;         ///< the same
+  std::optional<ImageSize> size, stored_size;                ///< nothing: not known
   std::optional<std::uint64_t> gpu_bytes, stored_gpu_bytes;  ///< find_gpu_bytes()
 };
 

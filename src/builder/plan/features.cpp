@@ -25,9 +25,9 @@ class FeatureList {
  public:
   explicit FeatureList(const scene::Scene& scene) : scene_(scene) {}
 
-  std::vector<PlanDecision> take_all() {
+  std::vector<PlanDecision> take_all(const TextureChoice& textures) {
     add_materials();
-    add_images();
+    add_images(textures);
     add_instances();
     add_document();
     for (const scene::LeftOut& left : scene_.left_out) add(left.what, false, left.why);
@@ -69,7 +69,7 @@ class FeatureList {
               "tangents are derived from normals and texture coordinates");
   }
 
-  void add_images() {
+  void add_images(const TextureChoice& textures) {
     std::uint64_t count = 0, bytes = 0, unread = 0;
     std::set<std::uint32_t> sampled;
     for (const scene::SceneMaterial& material : scene_.materials) {
@@ -82,10 +82,12 @@ class FeatureList {
       unread += sampled.contains(i) ? 0 : 1;
     }
     if (count > 0) {
-      add(count_text(count, "image", "images") + ", " + byte_size_text(bytes), true,
-          unread == 0
-              ? "carried through, bytes unchanged"
-              : "carried through, bytes unchanged, " + std::to_string(unread) + " that no material samples too");
+      std::string reason = "carried through, bytes unchanged";
+      if (!textures.is_keep()) {
+        reason = "stored as textures " + texture_word(textures) + " says, where they can be decoded";
+      }
+      if (unread > 0) reason += ", " + std::to_string(unread) + " that no material samples too";
+      add(count_text(count, "image", "images") + ", " + byte_size_text(bytes), true, std::move(reason));
     }
   }
 
@@ -143,8 +145,8 @@ class FeatureList {
 
 }  // namespace
 
-std::vector<PlanDecision> list_features(const scene::Scene& scene) {
-  return FeatureList(scene).take_all();
+std::vector<PlanDecision> list_features(const scene::Scene& scene, const TextureChoice& textures) {
+  return FeatureList(scene).take_all(textures);
 }
 
 std::vector<PlanDecision> list_ruled_features(const scene::Scene& scene) {

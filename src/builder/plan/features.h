@@ -5,12 +5,13 @@
 #include <vector>
 
 #include "builder/plan/plan.h"
+#include "builder/textures/texture_choice.h"
 #include "scene/scene.h"
 
 namespace meshlode::builder {
 
 /// In a fixed order; only what the scene has. What import left out comes last, in its words.
-[[nodiscard]] std::vector<PlanDecision> list_features(const scene::Scene& scene);
+[[nodiscard]] std::vector<PlanDecision> list_features(const scene::Scene& scene, const TextureChoice& textures);
 
 /// Those of them that a rule decides, of materials and instances: what the asset records. What is carried through
 /// stands in the asset anyway.

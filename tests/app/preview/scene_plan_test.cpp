@@ -152,7 +152,7 @@ TEST(Features, SayWhatBecomesOfEach) {
   scene.document = R"({"asset":{"version":"2.0"},"cameras":[{"type":"orthographic"},{"type":"perspective"}],
     "animations":[{}],"extensionsUsed":["VENDOR_thing",7]})";
   scene.left_out.push_back({"skin 0", "meshes are built static, in their bind pose"});
-  const std::vector<builder::PlanDecision> features = builder::list_features(scene);
+  const std::vector<builder::PlanDecision> features = builder::list_features(scene, {});
   const auto has = [&](const char* what, bool kept) {
     return std::any_of(features.begin(), features.end(), [&](const builder::PlanDecision& f) {
       return f.what == what && f.kept == kept && !f.reason.empty();
@@ -168,7 +168,7 @@ TEST(Features, SayWhatBecomesOfEach) {
   EXPECT_TRUE(has("extension VENDOR_thing", true));
   EXPECT_TRUE(has("skin 0", false));
   scene.document = "no JSON";
-  EXPECT_FALSE(builder::list_features(scene).empty());
+  EXPECT_FALSE(builder::list_features(scene, {}).empty());
 }
 
 }  // namespace

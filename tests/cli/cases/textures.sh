@@ -49,6 +49,32 @@ code build -q w.glb -o w.lode
 # Plan and doctor say it before a build.
 "$MESHLODE" plan a.gltf --textures resize:32 | sed -n '/^images/,/^features/p' | sizes
 json plan plan a.gltf --textures resize:32,webp --format json
+# Of images that a build keeps too, for they are too wide, of four colours, or damaged.
+python3 - <<'END'
+import base64, json
+exec(open("make.py").read().split("r = random")[0])
+def wide(width):
+    return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", width, 2, 8, 0, 0, 0, 0)) + chunk(b"IDAT", zlib.compress((b"\0" + b"\0" * width) * 2)) + chunk(b"IEND", b"")
+four = b"\xff\xd8\xff\xc0\x00\x14\x08\x00\x40\x00\x40\x04" + b"".join(bytes([i, 17, 0]) for i in range(1, 5)) + b"\xff\xd9"
+d = json.load(open("a.gltf"))
+for name, kind, data in [("wide", "png", wide(16384)), ("wider", "png", wide(17000)), ("four", "jpeg", four), ("broken", "png", b"\x89PNG")]:
+    d["images"].append({"name": name, "uri": f"data:image/{kind};base64," + base64.b64encode(data).decode()})
+json.dump(d, open("more.gltf", "w"))
+END
+"$MESHLODE" plan more.gltf --textures resize:32 | sed -n '/^images/,/^  kept .*images/p' | sizes
+"$MESHLODE" plan more.gltf | grep ' images, ' | sizes
+json plan plan more.gltf --textures resize:32,webp --format json
+for words in resize:32 resize:32,webp; do
+  code build -q more.gltf -o more.lode --textures $words
+  "$MESHLODE" info more.lode --format json >info.json; "$MESHLODE" plan more.gltf --textures $words --format json >plan.json
+  python3 - <<'END'
+import json
+plan, info = json.load(open("plan.json"))["images"], json.load(open("info.json"))["images"]
+same = [(a["stored_width"], a["stored_height"], a["stored_gpu_bytes"]) == (b["width"], b["height"], b["gpu_bytes"]) for a, b in zip(plan, info)]
+print(len(plan), len(info), same)
+END
+done
+rm more.* info.json plan.json
 "$MESHLODE" doctor a.gltf | grep -A3 heavy-images | grep -v costs | sizes
 # In a file, and in the manifest; a cache tells them apart.
 echo '{"textures": "resize:16"}' >meshlode.json
