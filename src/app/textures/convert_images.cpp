@@ -201,9 +201,9 @@ Result<std::vector<builder::ConvertedImage>> ImageConverter::convert(const scene
     const std::uint64_t encoder_bytes = std::uint64_t{is_lossless ? 28U : 16U} * task.width * task.height;
     task.bytes = texels + std::max(header->decoder_bytes, encoder_bytes);
     if (task.bytes > max_decoded_) {
-      return Error{ErrorCode::kUnsupported, "image " + std::to_string(blob.source_index),
-                   "to convert it takes " + byte_size_text(task.bytes) + ", and --max-decoded allows " +
-                       byte_size_text(max_decoded_)};
+      out[i].note = "stays as it is: to convert it takes " + byte_size_text(task.bytes) +
+                    ", and --max-decoded allows " + byte_size_text(max_decoded_);
+      continue;
     }
     largest = std::max(largest, task.bytes);
     tasks.push_back(task);
@@ -217,6 +217,7 @@ Result<std::vector<builder::ConvertedImage>> ImageConverter::convert(const scene
       out[blob] = std::move(*converted);
     } else {
       errors[i] = converted.error();
+      errors[i]->where = "image " + std::to_string(scene.blobs[blob].source_index);
     }
   });
   for (std::optional<Error>& error : errors) {

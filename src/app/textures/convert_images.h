@@ -17,7 +17,8 @@ class ImageConverter : public builder::ImageConverter {
  public:
   /// `max_decoded`: bytes that images may take decoded, those that are converted side by side together.
   explicit ImageConverter(std::uint64_t max_decoded) : max_decoded_(max_decoded) {}
-  /// An image that cannot be decoded stays, and its note says why. Threads: those of the caller's arena.
+  /// An image that cannot be decoded, or takes more memory, stays, and its note says why. Threads: those of the
+  /// caller's arena.
   [[nodiscard]] Result<std::vector<builder::ConvertedImage>> convert(
       const scene::Scene& scene, const builder::TextureChoice& choice) const override;
 

@@ -23,8 +23,8 @@ struct ConvertedImage {
 class ImageConverter {
  public:
   virtual ~ImageConverter() = default;
-  /// One for each of the scene's blobs. The same for any number of threads. Error: kUnsupported for an image that
-  /// takes more memory than it may.
+  /// One for each of the scene's blobs. The same for any number of threads. Error: kBuildFailed
+  /// for an image that cannot be encoded.
   [[nodiscard]] virtual Result<std::vector<ConvertedImage>> convert(const scene::Scene& scene,
                                                                     const TextureChoice& choice) const = 0;
 };

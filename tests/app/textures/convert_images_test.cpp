@@ -198,11 +198,12 @@ TEST(ConvertImages, NothingBecomesLargerWithoutFewerTexels) {
   EXPECT_NE((*images)[0].note.find("would not be smaller"), std::string::npos) << (*images)[0].note;
 }
 
-TEST(ConvertImages, MoreThanMayBeDecodedIsAnError) {
-  const auto images = ImageConverter(10'000).convert(scene_of({png(64)}, {}), choice_of("webp"));
-  ASSERT_FALSE(images);
-  EXPECT_EQ(images.error().code, ErrorCode::kUnsupported);
-  EXPECT_NE(images.error().message().find("image 0"), std::string::npos);
+TEST(ConvertImages, WhatTakesMoreMemoryThanAllowedStaysAndIsNamed) {
+  const auto images = ImageConverter(10'000).convert(scene_of({png(64), png(8)}, {}), choice_of("resize:4,webp"));
+  ASSERT_TRUE(images);
+  EXPECT_TRUE((*images)[0].bytes.empty());
+  EXPECT_NE((*images)[0].note.find("--max-decoded"), std::string::npos) << (*images)[0].note;
+  EXPECT_FALSE((*images)[1].bytes.empty());
 }
 
 TEST(ConvertImages, EncodersThatKeepEveryBitTakeMoreMemory) {

@@ -30,6 +30,8 @@ END
 run plan colors.ply
 run plan colors.ply --attributes none
 run plan colors.ply --grid 1e-9
+# The same error of a build names the file too.
+run build colors.ply -o grid.lode --grid 1e-9
 run plan missing.glb
 # Measured: the bytes are the builds' own; times vary.
 json plan plan colors.ply --measure --format json

@@ -85,7 +85,13 @@ grep -o '"textures": "[^"]*"' m.json
 echo '{"textures": 16}' >meshlode.json; run build a.gltf -o s.lode
 rm meshlode.json
 for words in '' resize: webp:0 keep,webp png resize:99999; do run build a.gltf -o t.lode --textures "$words"; done
-run build a.gltf -o t.lode --textures webp --max-decoded 1000
+# An image that takes more memory than it may stays.
+run build a.gltf -o t.lode --textures webp --max-decoded 1000 -q
+run verify t.lode --source a.gltf --quick --quiet
+"$MESHLODE" info t.lode | grep -E '^kept.*image [0-9]|^ .*image/' | sizes
+rm t.lode
+"$MESHLODE" build a.gltf -o s.lode --cache c --textures webp --max-decoded 1000 -q
+"$MESHLODE" build a.gltf -o s.lode --cache c --textures webp --dry-run
 # An image that is another one is found, whatever the settings say.
 run verify webp.lode --source a.gltf --quick --quiet
 sed 's/make/make/; s/4 \* x, r.randrange(40), 3 \* y/255 - 4 * x, 200, 255 - 3 * y/' make.py >other.py; cp a.gltf a.kept; python3 other.py

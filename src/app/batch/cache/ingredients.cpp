@@ -96,8 +96,7 @@ std::string settings_text(const builder::PipelineOptions& options, const scene::
   static_cast<void>(mesh_store);       // how soon
   static_cast<void>(looks);            // the program always has it; images are ingredients
   static_cast<void>(images);           // the same
-  static_cast<void>(max_decoded);      // the same
-  static_cast<void>(may_lack_images);  // the same: a missing image is an ingredient of its own
+  static_cast<void>(may_lack_images);  // a missing image is an ingredient of its own
   static_cast<void>(allow_outside);    // the same: a file that may not be opened is a missing one
   static_cast<void>(files_read);       // an output
   const std::pair<const char*, std::string> lines[] = {
@@ -126,6 +125,8 @@ std::string settings_text(const builder::PipelineOptions& options, const scene::
       {"page-order", builder::name_of(page_order)},
       {"root-bytes", text_of(std::uint64_t{root_bytes})},
       {"textures", builder::texture_word(textures)},
+      // Whether, not what; but images that take more stay as they are.
+      {"max-decoded", textures.is_keep() ? "any" : text_of(max_decoded)},
       {"study", hooks != nullptr ? hooks->record : "none"},
       {"position-error", text_of(position_error)},
       {"normal-error", text_of(normal_error)},

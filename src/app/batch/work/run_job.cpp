@@ -269,7 +269,7 @@ class Run {
     const auto bytes = builder::build_lode(std::move(*scene), pipeline_, watcher_.on_progress, report);
     pipeline_.mesh_store = nullptr;
     take_report(report);
-    if (!bytes) return bytes.error();
+    if (!bytes) return in_input(bytes.error());
     if (const Result<app::Settled> settled = app::settle(layers_); settled && !result_.decided.empty()) {
       if (const std::string use = app::describe_use(*settled); !use.empty())
         result_.decided = use + "; " + result_.decided;
@@ -292,6 +292,12 @@ class Run {
       options_.cache->remember(result_.job.output, ingredients_);
     }
     return Ok{};
+  }
+
+  /// The builder names places within the scene.
+  [[nodiscard]] Error in_input(Error error) const {
+    error.where = result_.job.input.string() + (error.where.empty() ? "" : ": " + error.where);
+    return error;
   }
 
   void take_report(builder::PipelineReport& report) {
