@@ -260,6 +260,9 @@ int run_bulk(const BulkVerb& verb, const std::vector<BulkInput>& files, const Bu
 
 int write_bulk(const Verb& verb, const BulkWords& words, const BulkTarget& target, std::vector<BulkColumn> columns,
                const OutputOptions& output, std::function<FileOutcome(const BulkInput&)> work) {
+  if (words.output == kStream && output.json()) {
+    return print_error({ErrorCode::kUsage, "-o", "- and --format json both mean stdout"});
+  }
   auto inputs = find_bulk_inputs(verb, words, app::InputKind::kAssets, ManifestSide::kAssets);
   if (!inputs) return print_error(inputs.error());
   const Status planned = plan_outputs(*inputs, words, target.what, target.extension);

@@ -9,6 +9,7 @@
 
 #include "base/try.h"
 #include "outputs.h"
+#include "streams.h"
 
 namespace meshlode::cli {
 
@@ -19,7 +20,7 @@ std::string picture_name(const std::string& place, std::uint32_t camera) {
 Status write_png(const std::string& path, const draw::Image& image) {
   const std::vector<std::uint8_t> png = draw::encode_png(image);
   if (png.empty()) return Error{ErrorCode::kIo, path, "the picture is too large to compress"};
-  return output_files().write(path, png);
+  return write_output(path, png);
 }
 
 Status CompareFolder::write(const std::string& place, const draw::Image& before, const draw::Image& after,

@@ -36,7 +36,7 @@ class CompareFolder {
 
 /// "PLACE.CAMERA".
 [[nodiscard]] std::string picture_name(const std::string& place, std::uint32_t camera);
-/// Errors: kIo, also for a picture that is too large to compress.
+/// `path`: "-" for stdout. Errors: kIo, also for a picture that is too large to compress.
 [[nodiscard]] Status write_png(const std::string& path, const draw::Image& image);
 
 }  // namespace meshlode::cli

@@ -91,7 +91,7 @@ FileOutcome compare_with_golden(const BulkInput& input, const GoldenCommand& com
     error.where = input.path + (error.where.empty() ? "" : ": ") + error.where;
     return fail(std::move(error));
   }
-  app::GoldenComparison comparison{input.path, command.golden.is_updated, {}};
+  app::GoldenComparison comparison{input.path, command.golden.is_updated, {}, {}};
   for (std::size_t i = 0; i < views->size(); ++i) {
     const draw::Image& image = (*views)[i].image;
     const std::string path = golden_path(command, input.place, i + 1);
@@ -101,6 +101,7 @@ FileOutcome compare_with_golden(const BulkInput& input, const GoldenCommand& com
     }
     const auto golden = read_golden(path, image);
     if (!golden) {
+      comparison.missing.push_back({static_cast<std::uint32_t>(i + 1), golden.error().message()});
       out.fail(golden.error());
       continue;
     }
@@ -123,7 +124,7 @@ FileOutcome compare_with_golden(const BulkInput& input, const GoldenCommand& com
     out.exit_code = std::max(out.exit_code, static_cast<int>(ErrorCode::kCheckFailed));
   }
   const auto flip = app::worst_flip(comparison.pictures);
-  const bool is_whole = comparison.pictures.size() == views->size();
+  const bool is_whole = comparison.missing.empty();
   const bool is_equal = is_whole && std::ranges::all_of(comparison.pictures, [](const app::PictureChange& picture) {
                           return picture.difference.differing_pixels == 0;
                         });
@@ -141,7 +142,8 @@ FileOutcome compare_with_golden(const BulkInput& input, const GoldenCommand& com
   } else if (!command.output.quiet) {
     out.text = command.golden.is_updated
                    ? input.path + ": " + std::to_string(views->size()) + " golden picture(s) written\n"
-                   : input.path + page.text;
+               : page.text.empty() ? ""
+                                   : input.path + page.text;
   }
   return done();
 }

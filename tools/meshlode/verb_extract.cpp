@@ -42,10 +42,7 @@ Error usage(const char* option, const char* detail) {
   return Error{ErrorCode::kUsage, option, detail};
 }
 
-Status check_options(const ExtractOptions& o, const BulkWords& bulk) {
-  if (bulk.output && *bulk.output == kStream && o.out.json()) {
-    return usage("-o", "- and --format json both mean stdout");
-  }
+Status check_options(const ExtractOptions& o) {
   if (o.is_stuck) {
     if (o.request.has_way() || o.request.bounds.has_any() || o.mesh || o.packing.quantize || o.packing.meshopt)
       return usage("--stuck", "cannot be combined with a cut, a bound, --mesh, --quantize or --meshopt");
@@ -280,7 +277,7 @@ int run_extract(const Verb& verb, std::span<char* const> args) {
   add_bulk_resources(parser, bulk);
   add_max_decoded_option(parser, o.max_decoded_text);
   if (const auto exit_code = parser.parse(args)) return *exit_code;
-  if (auto status = check_options(o, bulk); !status) return print_error(status.error());
+  if (auto status = check_options(o); !status) return print_error(status.error());
   const Result<std::uint64_t> max_decoded = parse_max_decoded(o.max_decoded_text);
   if (!max_decoded) return print_error(max_decoded.error());
   o.max_decoded = *max_decoded;

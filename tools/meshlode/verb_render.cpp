@@ -24,6 +24,7 @@
 #include "file_kind.h"
 #include "options.h"
 #include "promise_option.h"
+#include "streams.h"
 #include "verb.h"
 
 namespace meshlode::cli {
@@ -275,7 +276,8 @@ FileOutcome render_file(const BulkInput& input, const RenderOptions& options) {
   if (options.report.json()) {
     out.text = stats_json(input.output, options, *camera, stats);
   } else if (!options.report.quiet) {
-    out.text = stats_text(input.output, *camera, stats);
+    std::string& said = input.output == kStream ? out.notes : out.text;
+    said += stats_text(input.output, *camera, stats);
   }
   return out;
 }

@@ -14,10 +14,10 @@
 #include "file_kind.h"
 #include "format/names.h"
 #include "options.h"
-#include "outputs.h"
 #include "repacked.h"
 #include "run/read/asset.h"
 #include "run/unpack/content_hash.h"
+#include "streams.h"
 #include "verb.h"
 
 namespace meshlode::cli {
@@ -64,12 +64,12 @@ FileOutcome repack_file(const BulkInput& input, const RepackOptions& o) {
     error.where = error.where.empty() ? input.path : input.path + ": " + error.where;
     return fail(std::move(error));
   }
-  if (const Status status = output_files().write(input.output, *bytes); !status) return fail(status.error());
+  if (const Status status = write_output(input.output, *bytes); !status) return fail(status.error());
   out.cells = {grouped_digits(asset->bytes().size()), grouped_digits(bytes->size())};
   if (o.out.json()) {
     out.text = describe_json(input, o, *asset, bytes->size());
   } else if (!o.out.quiet) {
-    out.text = describe_text(input, o, *asset, bytes->size());
+    (input.output == kStream ? out.notes : out.text) = describe_text(input, o, *asset, bytes->size());
   }
   return out;
 }

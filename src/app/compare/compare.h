@@ -128,10 +128,15 @@ struct AssetComparison {
 [[nodiscard]] std::string pictures_text(const std::vector<PictureChange>& pictures);
 
 /// `compare --golden`: one asset against the pictures that were stored of it.
+struct MissingPicture {
+  std::uint32_t camera = 0;  ///< in the order of --camera, from 1
+  std::string reason;        ///< with the path
+};
 struct GoldenComparison {
   std::string file;
   bool is_updated = false;  ///< the pictures were written, nothing was compared
   std::vector<PictureChange> pictures;
+  std::vector<MissingPicture> missing;  ///< stored pictures that could not be compared
 };
 /// docs/schemas/golden.schema.json.
 [[nodiscard]] std::string golden_json(const GoldenComparison& comparison,

@@ -201,6 +201,15 @@ std::string golden_json(const GoldenComparison& comparison, const std::vector<Br
   w.field("file", comparison.file);
   w.field("updated", comparison.is_updated);
   write_pictures(w, comparison.pictures);
+  w.key("missing");
+  w.begin_array();
+  for (const MissingPicture& missing : comparison.missing) {
+    w.begin_object();
+    w.field("camera", missing.camera);
+    w.field("reason", missing.reason);
+    w.end_object();
+  }
+  w.end_array();
   write_broken(w, broken);
   w.end_object();
   return w.text();

@@ -115,6 +115,12 @@ ln -s golden link; for folder in golden golden/ ./golden/deep/new link/x; do run
 rm out-old/deep/same.lode golden/deep/vertex.2.png; head -c 100 golden/deep/texture.1.png >cut.png; mv cut.png golden/deep/texture.1.png
 run compare --golden golden out-old $CAMERA --camera 0,0,9,4,4,0
 run compare --golden golden out-old --size 32x32 --quiet
+# Of one asset: no line without its end, and the document has the reasons.
+for camera in "$CAMERA" '--size 32x32' "$CAMERA --camera 0,0,9,4,4,0"; do
+  run compare --golden golden/deep out-old/deep/vertex.lode $camera
+  json golden compare --golden golden/deep out-old/deep/vertex.lode $camera --format json
+  "$MESHLODE" compare --golden golden/deep out-old/deep/vertex.lode $camera --format json 2>/dev/null | grep -A6 '"missing"'
+done
 run compare --golden none out-old --quiet
 run compare --golden golden out-old --fail-if 'file_bytes.ratio>1'
 run compare --update a.lode

@@ -36,6 +36,15 @@ cmp cut.glb stream.glb
 sed 's/^cut.glb/-/' said.txt | diff - beside.txt
 "$MESHLODE" extract rock.lode --stuck -o - 2>/dev/null | head -c 4; echo
 run extract rock.lode --triangles 500 -o - --format json
+for words in 'render rock.lode --size 32x32 -o rock.png' 'repack rock.lode --codec none -o plain.lode'; do
+  file=${words##* }
+  "$MESHLODE" $words >said.txt
+  "$MESHLODE" ${words% *} - >stream.bin 2>beside.txt; echo "$words: exit $?"
+  cmp $file stream.bin
+  sed "s/$file/-/" said.txt | diff - beside.txt
+  run ${words% *} - --format json
+  rm $file stream.bin
+done
 run info rock.lode -o rock.lode
 run plan rock.glb -o rock.glb
 run plan rock.glb -o plan.png
