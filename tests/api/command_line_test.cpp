@@ -140,7 +140,7 @@ TEST(ApiCommandLine, EveryOptionOfBuildIsSaid) {
       "--help",    "--output",    "--output-folder", "--report", "--format",           "--quiet",
       "--junit",   "--manifest",  "--depfile",       "--cache",  "--no-cache",         "--cache-limit",
       "--dry-run", "--fail-fast", "--explain",       "--scene",  "--no-settings-file", "--settings-root",
-      "--fail-if", "--shard",     "--color",         "--for",    "--textures"};
+      "--fail-if", "--shard",     "--color",         "--for",    "--textures",         "--shard-costs"};
   for (const Saying& saying : kSayings) said.merge(options_in(saying.words));
   const std::set<std::string> offered = options_in(run_program("build --help"));
   ASSERT_TRUE(offered.contains("--error-tier"));

@@ -34,14 +34,14 @@ void GpuTest::TearDown() {
   for (const std::string& message : device_->messages()) ADD_FAILURE() << message;
 }
 
-std::vector<std::uint8_t> build_file(const std::string& path) {
+std::vector<std::uint8_t> build_file(const std::string& path, const builder::PipelineOptions& options) {
   auto scene = scene::import_scene(path, {});
   if (!scene) {
     ADD_FAILURE() << scene.error().message();
     return {};
   }
   builder::PipelineReport report;
-  auto bytes = builder::build_lode(*scene, {}, {}, report);
+  auto bytes = builder::build_lode(*scene, options, {}, report);
   if (bytes) return std::move(*bytes);
   ADD_FAILURE() << bytes.error().message();
   return {};

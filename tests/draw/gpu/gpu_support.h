@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include "builder/options.h"
 #include "draw/gpu/vulkan/vulkan.h"
 #include "judge/pictures/cameras.h"
 #include "run/read/asset.h"
@@ -29,6 +30,7 @@ class GpuTest : public testing::Test {
 };
 
 /// Bytes of the asset built from a scene file; empty where that failed (the test is failed too).
-[[nodiscard]] std::vector<std::uint8_t> build_file(const std::string& path);
+[[nodiscard]] std::vector<std::uint8_t> build_file(const std::string& path,
+                                                   const builder::PipelineOptions& options = {});
 
 }  // namespace meshlode::draw::test
