@@ -87,6 +87,7 @@ std::vector<TexelKind> texel_kinds(const scene::Scene& scene) {
     if (uses != images.end() && blob && *blob < blobs.size()) blobs[*blob] |= uses->second;
   });
   std::vector<TexelKind> kinds;
+  kinds.reserve(blobs.size());
   for (const unsigned uses : blobs) kinds.push_back(kind_of_uses(uses));
   return kinds;
 }
