@@ -10,47 +10,28 @@
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
 #include <GL/glcorearb.h>
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include <meshlode/meshlode.h>
 
+#include "place.h"
 #include "write_png.h"
 
 #ifndef DECODE_GLSL /* where <meshlode/decode.glsl> is installed */
 #define DECODE_GLSL "/usr/include/meshlode/decode.glsl"
 #endif
 
-enum { WIDTH = 640, HEIGHT = 480 };
-static const double FOVY = 0.7853981633974483, NEAR = 1e-3; /* radians; world units */
-
 /* What the shader sees of the tables, std430. */
 typedef struct gpu_item {
   uint32_t instance, page_word, index_in_page, cluster;
 } gpu_item;
 typedef struct gpu_instance {
-  float clip[16];     /* column-major: grid units of the mesh -> clip space */
-  float normal[3][4]; /* rows: directions of the mesh -> world, up to a length */
+  gpu_place place;
   uint32_t mesh, unused[3];
 } gpu_instance;
-typedef struct gpu_mesh {
-  uint32_t normal_scale, uv_set_count, has_color, material;
-} gpu_mesh;
 
 static meshlode_asset* asset;
 static meshlode_error error;
-
-static void stop(const char* what, const char* why) {
-  fprintf(stderr, "%s: %s\n", what, why);
-  exit(1);
-}
-static void* take(size_t count, size_t bytes) {
-  void* memory = calloc(count + 1, bytes);
-  if (!memory) stop("memory", "ran out");
-  return memory;
-}
 
 /* 1. A context without a window. */
 static void open_context(void) {
@@ -185,38 +166,7 @@ static uint32_t* load_pages(const meshlode_draw_item* items, size_t count, uint3
   return first_word;
 }
 
-/* 5. Transforms, in doubles up to the last step: grid -> mesh -> world -> relative to the eye -> clip space. */
-static void place_instance(const meshlode_instance* instance, const meshlode_mesh* mesh, const double eye[3],
-                           const double axes[3][3], gpu_instance* out) {
-  const double* m = instance->transform;
-  const double step = mesh->grid_mantissa * ldexp(1.0, mesh->grid_log2), focal = 1.0 / tan(FOVY / 2.0);
-  double seen[3][4]; /* right, up, forward of a grid point */
-  int row, column, k;
-  for (row = 0; row < 3; ++row)
-    for (column = 0; column < 4; ++column) {
-      double sum = 0.0;
-      for (k = 0; k < 3; ++k) {
-        const double* r = m + 4 * k;
-        const double moved = r[0] * mesh->origin[0] + r[1] * mesh->origin[1] + r[2] * mesh->origin[2] + r[3] - eye[k];
-        sum += axes[row][k] * (column < 3 ? r[column] * step : moved);
-      }
-      seen[row][column] = sum;
-    }
-  for (column = 0; column < 4; ++column) {
-    out->clip[4 * column] = (float)(focal * HEIGHT / WIDTH * seen[0][column]);
-    out->clip[4 * column + 1] = (float)(focal * seen[1][column]);
-    out->clip[4 * column + 2] = (float)(seen[2][column] - (column == 3 ? 2.0 * NEAR : 0.0)); /* no far plane */
-    out->clip[4 * column + 3] = (float)seen[2][column];
-  }
-  for (row = 0; row < 3; ++row) /* cofactors: right for uneven scales, and turned where the instance is mirrored */
-    for (column = 0; column < 3; ++column) {
-      const double *a = m + 4 * ((row + 1) % 3), *b = m + 4 * ((row + 2) % 3);
-      const int i = (column + 1) % 3, j = (column + 2) % 3;
-      out->normal[row][column] =
-          (float)((a[i] * b[j] - a[j] * b[i]) * (instance->flags & MESHLODE_INSTANCE_MIRRORED ? -1.0 : 1.0));
-    }
-  out->mesh = instance->mesh;
-}
+/* 5. Tables, with the transforms of place.h. */
 static void upload(GLuint binding, const void* data, size_t bytes) {
   GLuint buffer;
   glGenBuffers(1, &buffer);
@@ -230,12 +180,11 @@ static void upload_tables(const double eye[3], const double axes[3][3]) {
   const meshlode_mesh* meshes = meshlode_meshes(asset, &mesh_count);
   gpu_instance* placed = take(instance_count, sizeof *placed);
   gpu_mesh* described = take(mesh_count, sizeof *described);
-  for (i = 0; i < instance_count; ++i) place_instance(&instances[i], &meshes[instances[i].mesh], eye, axes, &placed[i]);
-  for (i = 0; i < mesh_count; ++i) {
-    const gpu_mesh one = {meshes[i].normal_mode == MESHLODE_NORMALS_STORED ? meshes[i].normal_scale : 0,
-                          meshes[i].uv_set_count, meshes[i].has_color, meshes[i].material};
-    described[i] = one;
+  for (i = 0; i < instance_count; ++i) {
+    placed[i].place = place_instance(&instances[i], &meshes[instances[i].mesh], eye, axes, 1.0, -1.0);
+    placed[i].mesh = instances[i].mesh;
   }
+  for (i = 0; i < mesh_count; ++i) described[i] = describe_mesh(&meshes[i]);
   upload(2, placed, instance_count * sizeof *placed);
   upload(3, described, mesh_count * sizeof *described);
   free(placed);
@@ -273,12 +222,6 @@ static void save_picture(const char* path, double* covered) {
   if (write_png(path, &picture[0][0][0], WIDTH, HEIGHT)) stop(path, "cannot be written, or is no PNG");
 }
 
-static void normalize(double* v) {
-  const double length = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-  int k;
-  for (k = 0; k < 3; ++k) v[k] /= length;
-}
-
 int main(int argc, char** argv) {
   meshlode_view view = {{0.0, 0.0, 0.0}, 0, FOVY, 0.0, NEAR, HEIGHT};
   double target[3], axes[3][3], covered;
@@ -290,20 +233,7 @@ int main(int argc, char** argv) {
   const meshlode_page* pages;
   if (argc != 10) stop("usage", "opengl ASSET PICTURE.png PIXEL_ERROR EYE_X EYE_Y EYE_Z TARGET_X TARGET_Y TARGET_Z");
   if (meshlode_open_file(argv[1], &asset, &error)) stop(argv[1], error.text);
-  for (i = 0; i < 3; ++i) {
-    view.eye[i] = atof(argv[4 + i]);
-    target[i] = atof(argv[7 + i]);
-    axes[2][i] = target[i] - view.eye[i];
-  }
-  normalize(axes[2]);       /* forward */
-  axes[0][0] = -axes[2][2]; /* right: forward x (0, 1, 0) */
-  axes[0][1] = 0.0;
-  axes[0][2] = axes[2][0];
-  normalize(axes[0]);
-  for (i = 0; i < 3; ++i) { /* up: right x forward */
-    const size_t j = (i + 1) % 3, k = (i + 2) % 3;
-    axes[1][i] = axes[0][j] * axes[2][k] - axes[0][k] * axes[2][j];
-  }
+  look(argv + 4, view.eye, target, axes);
 
   open_context();
   use_program();

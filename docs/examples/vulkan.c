@@ -14,23 +14,22 @@
 
 #include <meshlode/meshlode.h>
 
+#include "place.h"
 #include "write_png.h"
 
 #ifndef SHADERS /* where select.comp.spv, draw.vert.spv and draw.frag.spv lie */
 #define SHADERS "."
 #endif
 
-enum { WIDTH = 640, HEIGHT = 480, GROUP_SIZE = 64 };
+enum { GROUP_SIZE = 64 };
 enum { PAGES, INSTANCES, GROUPS, CLUSTERS, MESHES, ITEMS, DRAW, BUFFERS, READBACK = BUFFERS };
-static const double FOVY = 0.7853981633974483, NEAR = 1e-3; /* radians; world units */
 
 /* The structs of vulkan/tables.glsl. */
 typedef struct gpu_metric_view { /* MetricView of metric.h */
   float row[3][4], scale, error_scale, near_distance, reserved;
 } gpu_metric_view;
 typedef struct gpu_instance {
-  float clip[16];     /* column-major: grid units of the mesh -> clip space */
-  float normal[3][4]; /* rows: directions of the mesh -> world, up to a length */
+  gpu_place place;
   gpu_metric_view view;
   uint32_t mesh, first_cluster, cluster_count, unused;
 } gpu_instance;
@@ -41,9 +40,6 @@ typedef struct gpu_group {
 typedef struct gpu_cluster {
   uint32_t own_group, coarser_group, page_word, index_in_page;
 } gpu_cluster;
-typedef struct gpu_mesh {
-  uint32_t normal_scale, uv_set_count, has_color, material;
-} gpu_mesh;
 typedef struct gpu_item {
   uint32_t instance, cluster;
 } gpu_item;
@@ -71,17 +67,8 @@ static VkPipeline select_pipeline, draw_pipeline;
 static VkImage color, depth;
 static VkImageView color_view, depth_view;
 
-static void stop(const char* what, const char* why) {
-  fprintf(stderr, "%s: %s\n", what, why);
-  exit(1);
-}
 static void check(VkResult result, const char* what) {
   if (result != VK_SUCCESS) stop("Vulkan", what);
-}
-static void* take(size_t count, size_t bytes) {
-  void* memory = calloc(count + 1, bytes);
-  if (!memory) stop("memory", "ran out");
-  return memory;
 }
 
 /* 1. A device with a queue that draws and computes. */
@@ -218,40 +205,7 @@ static gpu_metric_view metric_view(const meshlode_instance* instance, const mesh
   return view;
 }
 
-/* 4. Transforms, in doubles up to the last step: grid -> mesh -> world -> relative to the eye -> clip space. */
-static void place_instance(const meshlode_instance* instance, const meshlode_mesh* mesh, const double eye[3],
-                           const double axes[3][3], gpu_instance* out) {
-  const double* m = instance->transform;
-  const double step = mesh->grid_mantissa * ldexp(1.0, mesh->grid_log2), focal = 1.0 / tan(FOVY / 2.0);
-  double seen[3][4]; /* right, up, forward of a grid point */
-  int row, column, k;
-  for (row = 0; row < 3; ++row)
-    for (column = 0; column < 4; ++column) {
-      double sum = 0.0;
-      for (k = 0; k < 3; ++k) {
-        const double* r = m + 4 * k;
-        const double moved = r[0] * mesh->origin[0] + r[1] * mesh->origin[1] + r[2] * mesh->origin[2] + r[3] - eye[k];
-        sum += axes[row][k] * (column < 3 ? r[column] * step : moved);
-      }
-      seen[row][column] = sum;
-    }
-  for (column = 0; column < 4; ++column) {
-    out->clip[4 * column] = (float)(focal * HEIGHT / WIDTH * seen[0][column]);
-    out->clip[4 * column + 1] = (float)(-focal * seen[1][column]);                     /* y points down */
-    out->clip[4 * column + 2] = (float)(seen[2][column] - (column == 3 ? NEAR : 0.0)); /* no far plane */
-    out->clip[4 * column + 3] = (float)seen[2][column];
-  }
-  for (row = 0; row < 3; ++row) /* cofactors: right for uneven scales, and turned where the instance is mirrored */
-    for (column = 0; column < 3; ++column) {
-      const double *a = m + 4 * ((row + 1) % 3), *b = m + 4 * ((row + 2) % 3);
-      const int i = (column + 1) % 3, j = (column + 2) % 3;
-      out->normal[row][column] =
-          (float)((a[i] * b[j] - a[j] * b[i]) * (instance->flags & MESHLODE_INSTANCE_MIRRORED ? -1.0 : 1.0));
-    }
-  out->mesh = instance->mesh;
-}
-
-/* 5. Tables and pages, once. */
+/* 4. Tables and pages, once, with the transforms of place.h. */
 static void fill_buffers(const meshlode_view* camera, const double axes[3][3], double pixel_error) {
   const VkBufferUsageFlags storage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
   uint32_t node_count, i, p, *words, *first_word = take(page_count, sizeof *first_word);
@@ -277,7 +231,8 @@ static void fill_buffers(const meshlode_view* camera, const double axes[3][3], d
     const meshlode_mesh* mesh = &meshes[instances[i].mesh];
     memset(&placed[i], 0, sizeof placed[i]);
     if ((instances[i].flags & MESHLODE_INSTANCE_SINGULAR) || mesh->cluster_count == 0) continue; /* not drawn */
-    place_instance(&instances[i], mesh, camera->eye, axes, &placed[i]);
+    placed[i].place = place_instance(&instances[i], mesh, camera->eye, axes, -1.0, 0.0);
+    placed[i].mesh = instances[i].mesh;
     placed[i].view = metric_view(&instances[i], mesh, &nodes[mesh->first_node], camera, pixel_error);
     placed[i].first_cluster = mesh->first_cluster;
     placed[i].cluster_count = mesh->cluster_count;
@@ -300,11 +255,7 @@ static void fill_buffers(const meshlode_view* camera, const double axes[3][3], d
   }
   make_buffer(MESHES, mesh_count * sizeof *described, storage);
   described = mapped[MESHES];
-  for (i = 0; i < mesh_count; ++i) {
-    const gpu_mesh one = {meshes[i].normal_mode == MESHLODE_NORMALS_STORED ? meshes[i].normal_scale : 0,
-                          meshes[i].uv_set_count, meshes[i].has_color, meshes[i].material};
-    described[i] = one;
-  }
+  for (i = 0; i < mesh_count; ++i) described[i] = describe_mesh(&meshes[i]);
   make_buffer(ITEMS, item_count * sizeof(gpu_item), storage); /* no cut is larger */
   make_buffer(DRAW, sizeof draw, storage | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
   memcpy(mapped[DRAW], &draw, sizeof draw);
@@ -312,7 +263,7 @@ static void fill_buffers(const meshlode_view* camera, const double axes[3][3], d
   free(first_word);
 }
 
-/* 6. One descriptor set of seven buffers for both pipelines. */
+/* 5. One descriptor set of seven buffers for both pipelines. */
 static void make_set(void) {
   VkDescriptorSetLayoutBinding bindings[BUFFERS];
   VkDescriptorSetLayoutCreateInfo set_info = {VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO};
@@ -419,7 +370,7 @@ static void make_pipelines(void) {
   check(vkCreateGraphicsPipelines(device, VK_NULL_HANDLE, 1, &info, NULL, &draw_pipeline), "no pipeline");
 }
 
-/* 7. A frame: select, draw, copy. */
+/* 6. A frame: select, draw, copy. */
 static void wait_for(VkPipelineStageFlags2 from, VkAccessFlags2 written, VkPipelineStageFlags2 to,
                      VkAccessFlags2 read) {
   VkMemoryBarrier2 barrier = {VK_STRUCTURE_TYPE_MEMORY_BARRIER_2};
@@ -513,7 +464,7 @@ static double save_picture(const char* path) {
   return 100.0 * (double)count / (WIDTH * HEIGHT);
 }
 
-/* 8. Is it the CPU's cut? */
+/* 7. Is it the CPU's cut? */
 static int compare_items(const void* a, const void* b) {
   const gpu_item *x = a, *y = b;
   if (x->instance != y->instance) return x->instance < y->instance ? -1 : 1;
@@ -531,12 +482,6 @@ static void check_cut(const meshlode_view* view, double pixel_error, size_t coun
   free(expected);
 }
 
-static void normalize(double* v) {
-  const double length = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-  int k;
-  for (k = 0; k < 3; ++k) v[k] /= length;
-}
-
 int main(int argc, char** argv) {
   meshlode_view view = {{0.0, 0.0, 0.0}, 0, FOVY, 0.0, NEAR, HEIGHT};
   double target[3], axes[3][3], pixel_error, covered;
@@ -550,20 +495,7 @@ int main(int argc, char** argv) {
   clusters = meshlode_clusters(asset, &cluster_count);
   pages = meshlode_pages(asset, &page_count);
   if (cluster_count == 0 || instance_count == 0) stop(argv[1], "nothing to draw");
-  for (i = 0; i < 3; ++i) {
-    view.eye[i] = atof(argv[4 + i]);
-    target[i] = atof(argv[7 + i]);
-    axes[2][i] = target[i] - view.eye[i];
-  }
-  normalize(axes[2]);       /* forward */
-  axes[0][0] = -axes[2][2]; /* right: forward x (0, 1, 0) */
-  axes[0][1] = 0.0;
-  axes[0][2] = axes[2][0];
-  normalize(axes[0]);
-  for (i = 0; i < 3; ++i) { /* up: right x forward */
-    const size_t j = (i + 1) % 3, k = (i + 2) % 3;
-    axes[1][i] = axes[0][j] * axes[2][k] - axes[0][k] * axes[2][j];
-  }
+  look(argv + 4, view.eye, target, axes);
 
   open_device();
   fill_buffers(&view, (const double(*)[3])axes, pixel_error);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A corner of a triangle of a cluster, decoded from its page.
+// Decodes one corner of a triangle from the page of its cluster.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "meshlode/metric.h"

@@ -16,20 +16,6 @@ namespace meshlode::app {
 
 namespace {
 
-/// Beside that of `report`. Pictures keep their pixels: a difference of one of them is seen.
-constexpr const char* kCompareStyle = R"css(main { grid-template-columns: minmax(0, 1fr); }
-.trio { display: grid; grid-template-columns: repeat(3, minmax(0, 1fr)); gap: 8px; margin: 8px 0; }
-figure { margin: 0; }
-figure img { width: 100%; height: auto; display: block; image-rendering: pixelated; border: 1px solid var(--line); }
-figcaption { color: var(--quiet); font-size: 13px; }
-pre { overflow-x: auto; font-size: 13px; margin: 4px 0; }
-th:first-child { min-width: 110px; }
-@media (max-width: 800px) {
-  .trio { grid-template-columns: minmax(0, 1fr); }
-  th:nth-child(3), th:nth-child(4), td:nth-child(3), td:nth-child(4) { display: none; }
-}
-)css";
-
 bool is_bad(const ComparedFile& file) {
   return file.verdict == "FAILED" || file.verdict == "error" || file.verdict == "gone";
 }
@@ -100,34 +86,6 @@ std::string summary_of(const std::vector<ComparedFile>& files) {
   return text;
 }
 
-constexpr const char* kComparePage = R"html(<!-- SPDX-License-Identifier: MIT -->
-<!DOCTYPE html>
-<html lang="en">
-<head>
-<meta charset="utf-8">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<meta http-equiv="Content-Security-Policy" content="default-src 'none'; style-src 'unsafe-inline'; img-src 'self' file:">
-<title>@TITLE@</title>
-<style>
-@STYLE@</style>
-</head>
-<body>
-<header>
-<h1>@TITLE@</h1>
-<p>@SUMMARY@</p>
-</header>
-<main>
-<section>
-<h2>Files</h2>
-<div class="scroll"><table>
-<tr><th>file</th><th>result</th><th>old bytes</th><th>new bytes</th><th>FLIP mean</th><th>FLIP max</th></tr>
-@ROWS@</table></div>
-</section>
-@SECTIONS@</main>
-</body>
-</html>
-)html";
-
 }  // namespace
 
 std::string compare_page(std::vector<ComparedFile> files, const std::string& title) {
@@ -140,11 +98,11 @@ std::string compare_page(std::vector<ComparedFile> files, const std::string& tit
     if (has_section(files[i])) add_section(sections, files[i], i);
   }
   const std::array<PageHole, 5> holes{{{"@TITLE@", escape_html(title)},
-                                       {"@STYLE@", std::string(overview_style()) + kCompareStyle},
+                                       {"@STYLE@", std::string(overview_style()) + std::string(compare_style())},
                                        {"@SUMMARY@", escape_html(summary_of(files))},
                                        {"@ROWS@", rows},
                                        {"@SECTIONS@", sections}}};
-  return fill_holes(kComparePage, holes);
+  return fill_holes(compare_frame(), holes);
 }
 
 }  // namespace meshlode::app

@@ -46,6 +46,12 @@ constexpr unsigned char kOverviewStyle[] = {
 constexpr unsigned char kOverviewScript[] = {
 #include "overview.js.inc"
 };
+constexpr unsigned char kCompareFrame[] = {
+#include "compare.html.inc"
+};
+constexpr unsigned char kCompareStyle[] = {
+#include "compare.css.inc"
+};
 
 template <std::size_t N>
 std::string_view text_of(const unsigned char (&bytes)[N]) {
@@ -83,6 +89,14 @@ std::string_view overview_style() {
 
 std::string_view overview_script() {
   return text_of(kOverviewScript);
+}
+
+std::string_view compare_frame() {
+  return text_of(kCompareFrame);
+}
+
+std::string_view compare_style() {
+  return text_of(kCompareStyle);
 }
 
 }  // namespace meshlode::app

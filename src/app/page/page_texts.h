@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The fixed texts of the page, which lie beside this file as they are edited: viewer.html, viewer.css and the scripts.
+// The fixed texts of pages, which lie beside this file as they are edited: HTML, CSS and scripts.
 // These go into other people's pages, and are MIT.
 #pragma once
 
@@ -20,5 +20,9 @@ namespace meshlode::app {
 [[nodiscard]] std::string_view overview_frame();
 [[nodiscard]] std::string_view overview_style();
 [[nodiscard]] std::string_view overview_script();
+
+/// The page of `compare` (app/compare/), which has no script. Its style goes behind that of the overview.
+[[nodiscard]] std::string_view compare_frame();
+[[nodiscard]] std::string_view compare_style();
 
 }  // namespace meshlode::app
