@@ -29,7 +29,8 @@ static void normalize(double* v) {
   for (k = 0; k < 3; ++k) v[k] /= length;
 }
 
-/* Three numbers each for eye and target, from the command line. axes: right, up, forward; the world's up is (0, 1, 0). */
+/* Three numbers each for eye and target, from the command line. axes: right, up, forward; the world's up is (0, 1, 0).
+ */
 static void look(char** words, double eye[3], double target[3], double axes[3][3]) {
   int i;
   for (i = 0; i < 3; ++i) {

@@ -8,10 +8,9 @@
 #include <utility>
 
 #include "app/batch/shard/read_manifest.h"
-#include "base/file.h"
 #include "base/try.h"
 #include "bulk.h"
-#include "file_kind.h"
+#include "kept_manifest.h"
 #include "output_name.h"
 #include "outputs.h"
 #include "streams.h"
@@ -108,7 +107,7 @@ Status plan_outputs(BulkInputs& inputs, const BulkWords& words, const std::strin
   for (BulkInput& input : inputs.files) {
     if (!input.error.empty()) continue;
     if (input.output.empty()) input.output = (std::filesystem::path(words.folder) / (input.place + extension)).string();
-    if (const auto id = find_file_id(input.path)) output_files().keep(*id);
+    keep_file(input.path);
   }
   for (const BulkInput& input : inputs.files) {
     if (!input.output.empty()) TRY(claim_output(input.output));
@@ -136,9 +135,7 @@ Result<BulkInputs> find_bulk_inputs(const Verb& verb, const BulkWords& words, ap
     }
   }
   if (!words.manifest.empty()) {
-    TRY(check_is_manifest(words.manifest));
-    TRY_LET(manifest, app::read_manifest(words.manifest));
-    if (const auto id = find_file_id(words.manifest)) output_files().keep(*id);
+    TRY_LET(manifest, read_kept_manifest(words.manifest));
     inputs.is_whole = inputs.is_whole && manifest->is_complete && !manifest->shard;
     const std::string base = shared_folder(manifest->results);
     for (const app::JobResult& r : manifest->results) {
@@ -158,7 +155,7 @@ Result<BulkInputs> find_bulk_inputs(const Verb& verb, const BulkWords& words, ap
   for (const BulkInput& input : inputs.files) {
     if (input.path == kStream) return Error{ErrorCode::kUsage, "", "stdin is one file: give it alone"};
     for (const std::string& path : {input.path, input.source}) {
-      if (const auto id = path.empty() ? std::nullopt : find_file_id(path)) output_files().keep(*id);
+      keep_file(path);
     }
   }
   return inputs;

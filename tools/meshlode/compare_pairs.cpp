@@ -12,20 +12,13 @@
 #include "base/file.h"
 #include "base/try.h"
 #include "file_kind.h"
-#include "outputs.h"
+#include "kept_manifest.h"
 
 namespace meshlode::cli {
 
 namespace {
 
 namespace fs = std::filesystem;
-
-Result<app::Manifest> read_kept_manifest(const std::string& path) {
-  TRY(check_is_manifest(path));
-  TRY_LET(manifest, app::read_manifest(path));
-  if (const auto id = find_file_id(path)) output_files().keep(*id);
-  return manifest;
-}
 
 /// Indices into the older results: which of them goes with each newer one. A scene and an output that both fit come
 /// before a scene alone, and that before an output alone: an output's place is free to change, and so is a scene's.

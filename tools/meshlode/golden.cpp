@@ -40,7 +40,7 @@ Result<draw::Image> read_golden(const std::string& path, const draw::Image& want
     return Error{ErrorCode::kCheckFailed, path, "there is no such golden picture; --update writes it"};
   }
   TRY_LET(file, MappedFile::open(path));
-  if (const auto id = find_file_id(path)) output_files().keep(*id);
+  keep_file(path);
   const auto named = [&](Error e) {
     e.where = path + (e.where.empty() ? "" : ": ") + e.where;
     return e;

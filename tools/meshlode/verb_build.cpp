@@ -54,7 +54,7 @@ using app::JobResult;
 Status check_outputs(const std::vector<Job>& jobs, const std::vector<std::string>& side_outputs, bool is_dry) {
   std::error_code error;
   for (const Job& job : jobs) {
-    if (const auto id = find_file_id(job.input)) output_files().keep(*id);
+    keep_file(job.input);
     if (fs::is_directory(job.output, error)) return Error{ErrorCode::kIo, job.output.string(), "is a folder"};
   }
   for (std::size_t i = 0; i < side_outputs.size(); ++i) {
@@ -133,7 +133,7 @@ Result<std::vector<Job>> take_share(const std::vector<Job>& jobs, BuildCommand& 
   weights.reserve(jobs.size());
   for (const Job& job : jobs) weights.push_back(app::weigh_scene(job.input));
   if (!costs.empty()) {
-    if (const auto id = find_file_id(costs)) output_files().keep(*id);
+    keep_file(costs);
     TRY(check_is_manifest(costs, "meshlode merge"));
     TRY_LET(last, app::read_costs(costs));
     if (!last->empty() && !jobs.empty() && !app::knows_any(*last, jobs)) {

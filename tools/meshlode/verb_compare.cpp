@@ -11,7 +11,6 @@
 
 #include "app/compare/compare.h"
 #include "base/append_format.h"
-#include "base/file.h"
 #include "base/output_files.h"
 #include "base/printable.h"
 #include "base/try.h"
@@ -296,7 +295,7 @@ int run_compare(const Verb& verb, std::span<char* const> args) {
     std::vector<BulkInput> pair{{after, before}};
     if (const Status named = name_places(pair); !named) return print_error(named.error());
     for (const std::string& path : {before, after}) {
-      if (const auto id = find_file_id(path)) output_files().keep(*id);
+      keep_file(path);
     }
     const JobLimit limit(bulk.jobs);
     const int exit_code = compare_pair(pair.front(), command, folder).print();
@@ -308,7 +307,7 @@ int run_compare(const Verb& verb, std::span<char* const> args) {
   if (const Status named = name_places(files); !named) return print_error(named.error());
   for (const BulkInput& input : files) {
     for (const std::string& path : {input.path, input.source}) {
-      if (const auto id = path.empty() ? std::nullopt : find_file_id(path)) output_files().keep(*id);
+      keep_file(path);
     }
   }
   add_failures(files, folder);

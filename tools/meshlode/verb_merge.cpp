@@ -12,8 +12,7 @@
 #include "app/batch/shard/merge.h"
 #include "app/batch/shard/read_manifest.h"
 #include "app/batch/tell/tell.h"
-#include "base/file.h"
-#include "file_kind.h"
+#include "kept_manifest.h"
 #include "options.h"
 #include "output_name.h"
 #include "outputs.h"
@@ -22,15 +21,6 @@
 namespace meshlode::cli {
 
 namespace {
-
-/// Neither scenes and what they name nor assets are written over.
-void keep_files(const std::vector<app::JobResult>& results) {
-  for (const app::JobResult& r : results) {
-    keep_file(r.job.input);
-    keep_file(r.job.output);
-    for (const app::Dependency& file : r.files) keep_file(file.path);
-  }
-}
 
 int run_merge(const Verb& verb, std::span<char* const> args) {
   std::vector<std::string> paths;
@@ -46,15 +36,13 @@ int run_merge(const Verb& verb, std::span<char* const> args) {
 
   std::vector<app::ShardManifest> shards;
   for (const std::string& path : paths) {
-    keep_file(path);
-    if (const Status kind = check_is_manifest(path, "meshlode build --shard"); !kind) return print_error(kind.error());
-    auto manifest = app::read_manifest(path);
+    auto manifest = read_kept_manifest(path, "meshlode build --shard");
     if (!manifest) return print_error(manifest.error());
     shards.push_back({path, std::move(*manifest)});
   }
   const auto merged = app::merge_shards(std::move(shards));
   if (!merged) return print_error(merged.error());
-  keep_files(merged->results);
+  keep_results(merged->results);
   if (const Status there = app::check_assets(merged->results); !there) return print_error(there.error());
   if (const Status free = output_files().claim(output); !free) return print_error(free.error());
   if (const Status name = check_text_name("-o", output, {".json"}); !name) return print_error(name.error());

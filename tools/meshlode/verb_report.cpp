@@ -8,10 +8,9 @@
 
 #include "app/batch/shard/read_manifest.h"
 #include "app/overview/overview.h"
-#include "base/file.h"
 #include "base/try.h"
 #include "doctor_advice.h"
-#include "file_kind.h"
+#include "kept_manifest.h"
 #include "options.h"
 #include "output_name.h"
 #include "outputs.h"
@@ -29,16 +28,10 @@ struct ReportFile {
   std::string format, path;
 };
 
-Result<app::Manifest> read_kept(const std::string& path) {
-  TRY(check_is_manifest(path));
-  TRY_LET(manifest, app::read_manifest(path));
-  keep_file(path);
-  for (const app::JobResult& r : manifest->results) {
-    keep_file(r.job.input);
-    keep_file(r.job.output);
-    for (const app::Dependency& file : r.files) keep_file(file.path);
-  }
-  return std::move(*manifest);
+Result<app::Manifest> read_with_results(const std::string& path) {
+  TRY_LET(manifest, read_kept_manifest(path));
+  keep_results(manifest->results);
+  return manifest;
 }
 
 Status claim(const ReportFile& file) {
@@ -75,11 +68,11 @@ int run_report(const Verb& verb, std::span<char* const> args) {
   add_jobs_option(parser, jobs);
   if (const auto exit_code = parser.parse(args)) return *exit_code;
 
-  auto manifest = read_kept(path);
+  auto manifest = read_with_results(path);
   if (!manifest) return print_error(manifest.error());
   std::optional<app::Manifest> old;
   if (!against.empty()) {
-    auto read = read_kept(against);
+    auto read = read_with_results(against);
     if (!read) return print_error(read.error());
     old = std::move(*read);
   }
