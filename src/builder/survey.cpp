@@ -35,6 +35,8 @@ std::vector<MeshGaps> find_layers(const scene::Scene& scene, const std::vector<A
   std::vector<MeshGaps> gaps = find_gaps(scene, wants);
   for (std::size_t i = 0; i < gaps.size(); ++i) {
     if (gaps[i].codes.empty()) continue;
+    // Parts by vertex are at least as many as pieces: most meshes need no more than these.
+    if (!are_seen_together(scene::count_parts_by_vertex(scene.meshes[i]), gaps[i].codes.size())) continue;
     const std::size_t pieces = scene::Pieces(scene.meshes[i]).pieces.size();
     if (are_seen_together(pieces, gaps[i].codes.size())) gaps[i].codes = {};
   }

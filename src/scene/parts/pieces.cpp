@@ -54,6 +54,22 @@ Pieces::Pieces(const SourceMesh& mesh) {
   });
 }
 
+std::size_t count_parts_by_vertex(const SourceMesh& mesh) {
+  std::size_t vertices = 0, parts = 0;
+  for (const Primitive& primitive : mesh.primitives) vertices += primitive.positions.size();
+  DisjointSets sets(vertices);
+  std::vector<std::uint8_t> is_used(vertices, 0);
+  for_each_triangle(mesh, [&](const std::array<std::uint32_t, 3>& t, std::uint32_t) {
+    for (const std::uint32_t v : t) {
+      parts += is_used[v] == 0 ? 1U : 0U;
+      is_used[v] = 1;
+    }
+    parts -= sets.join(t[0], t[1]) ? 1U : 0U;
+    parts -= sets.join(t[1], t[2]) ? 1U : 0U;
+  });
+  return parts;
+}
+
 std::vector<std::uint8_t> Pieces::find_small(const SourceMesh& mesh,
                                              std::span<const std::uint32_t> most_triangles) const {
   std::vector<std::uint8_t> is_small(pieces.size(), 1);

@@ -46,4 +46,7 @@ struct Pieces {
                                                      std::span<const std::uint32_t> most_triangles) const;
 };
 
+/// Parts that share no vertex number: never fewer than there are pieces, and found without sorting positions.
+[[nodiscard]] std::size_t count_parts_by_vertex(const SourceMesh& mesh);
+
 }  // namespace meshlode::scene

@@ -75,6 +75,28 @@ TEST(Pieces, ShareNoPosition) {
   EXPECT_EQ(joined.find_small(two, {}), (Flags{0, 0}));
 }
 
+TEST(Pieces, AreNoMoreThanPartsByVertex) {
+  const Primitive pair = lab::make_foliage(2);
+  EXPECT_EQ(count_parts_by_vertex(lab::as_mesh(pair)), 2U);
+  SourceMesh mesh = lab::as_mesh(lab::make_rock(6));
+  EXPECT_EQ(Pieces(mesh).pieces.size(), 1U);
+  EXPECT_EQ(count_parts_by_vertex(mesh), 6U) << "the faces of the cube that it is made from";
+  // A vertex of its own for each corner, and one that no triangle has.
+  Primitive& primitive = mesh.primitives[0];
+  const std::size_t triangles = primitive.indices.size() / 3;
+  const std::vector<Vec3d> positions = primitive.positions;
+  primitive.positions.clear();
+  for (std::uint32_t& v : primitive.indices) {
+    primitive.positions.push_back(positions[v]);
+    v = static_cast<std::uint32_t>(primitive.positions.size()) - 1U;
+  }
+  primitive.positions.push_back(Vec3d(9.0));
+  EXPECT_EQ(Pieces(mesh).pieces.size(), 1U);
+  EXPECT_EQ(count_parts_by_vertex(mesh), triangles);
+  mesh.primitives.push_back(pair);
+  EXPECT_EQ(count_parts_by_vertex(mesh), triangles + 2);
+}
+
 TEST(SplitParts, TakeEachTriangleOnce) {
   const Scene before = rock_and_cards();
   Scene scene = before;
