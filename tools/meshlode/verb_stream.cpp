@@ -29,7 +29,7 @@ namespace {
 struct StreamWords {
   std::vector<std::string> assets;
   std::optional<std::string> scene, path, builtin;
-  std::string size = "1920x1080", pool = "all,1/2,1/4", bandwidth = "10,50,200", latency = "5";
+  std::string size = "1920x1080", pool = "all,1/2,1/4", bandwidth = "10,50,200", latency = "5", layout = "file";
   double pixel_error = 1.0;
   std::optional<double> near_distance;
   std::uint32_t fps = 60, jobs = 0;
@@ -109,6 +109,28 @@ Result<std::vector<app::RunSpec>> make_specs(const StreamWords& words, std::uint
   return specs;
 }
 
+/// What --layout names beside the file's own pages.
+Result<std::vector<app::PageLayout>> read_layouts(const std::string& word) {
+  constexpr std::string_view kTry = "try:";
+  if (word == "file") return std::vector<app::PageLayout>();
+  if (!word.starts_with(kTry)) {
+    return Error{ErrorCode::kUsage, "--layout", "expected file, or try: and layouts" + got_text(word)};
+  }
+  return app::parse_layouts(std::string_view(word).substr(kTry.size()), "--layout");
+}
+
+std::vector<app::TriedLayout> try_layouts(const app::StreamScene& scene, std::span<const app::PathFrame> path,
+                                          const app::StreamView& view, const app::RunSpec& spec,
+                                          std::span<const app::PageLayout> layouts) {
+  std::vector<app::TriedLayout> tried;
+  for (const app::PageLayout& layout : layouts) {
+    const app::StreamScene other = app::with_layout(scene, layout);
+    app::Simulation simulation = app::simulate(other, path, view, {&spec, 1});
+    tried.push_back({layout, other.pages.size(), std::move(simulation.demand), std::move(simulation.runs.front())});
+  }
+  return tried;
+}
+
 Result<app::StreamView> make_view(const StreamWords& words) {
   app::StreamView view;
   if (!parse_size(words.size, view.width, view.height)) {
@@ -185,6 +207,10 @@ void add_options(OptionParser& parser, StreamWords& words) {
       "room for decoded pages: all, megabytes (10^6 bytes), or a share of all pages as 1/4; comma-separated");
   parser.add_value("--bandwidth LIST", words.bandwidth, "of the link, in megabytes per second; comma-separated");
   parser.add_value("--latency LIST", words.latency, "of a request, in milliseconds; comma-separated");
+  parser.add_value(
+      "--layout file|try:LIST", words.layout,
+      "pages: file, the assets' own; try:, those and what other builds would make of them, comma-separated: "
+      "KiB per page, then /level or /covisible, then /BYTES of first pages, as in try:32,32/covisible");
   parser.add_flag("--check", words.is_checked,
                   "hold each frame's cut against its definition; findings are printed, the exit code is 6");
   parser.group("Output");
@@ -225,16 +251,23 @@ Result<int> stream(const StreamWords& words) {
   TRY(check_together(words));
   TRY_LET(max_decoded, parse_max_decoded(words.max_decoded));
   TRY_LET(view, make_view(words));
+  TRY_LET(layouts, read_layouts(words.layout));
   TRY_LET(scene, read_scene(words, *max_decoded));
   TRY_LET(specs, make_specs(words, scene->page_bytes()));
   TRY_LET(path, read_path(words, *scene));
   TRY(claim_outputs(words));
   JobLimit limit(words.jobs);
   app::Simulation simulation;
-  limit.run([&] { simulation = app::simulate(*scene, *path, *view, *specs, {words.is_checked, words.has_log}); });
-  const app::StreamReport report{
-      words.assets, words.path.value_or(builtin_of(words)), *scene, *path, *view, *specs, simulation, words.is_checked,
-      words.has_log};
+  std::vector<app::TriedLayout> tried;
+  limit.run([&] {
+    simulation = app::simulate(*scene, *path, *view, *specs, {words.is_checked, words.has_log});
+    tried = try_layouts(*scene, *path, *view, specs->front(), *layouts);
+  });
+  const app::StreamReport report{words.assets,  words.path.value_or(builtin_of(words)),
+                                 *scene,        *path,
+                                 *view,         *specs,
+                                 simulation,    words.is_checked,
+                                 words.has_log, tried};
   if (words.plot) TRY(write_text(*words.plot, stream_plot(report)));
   const std::string text = words.output.json() ? app::stream_json(report) : app::stream_text(report);
   const bool has_findings = app::count_findings(simulation) > 0;

@@ -8,10 +8,19 @@
 #include <vector>
 
 #include "app/stream/camera_path.h"
+#include "app/stream/page_layout.h"
 #include "app/stream/scene.h"
 #include "app/stream/simulate.h"
 
 namespace meshlode::app {
+
+/// The same path with the groups in other pages.
+struct TriedLayout {
+  PageLayout layout;
+  std::uint64_t pages = 0;
+  Demand demand;
+  RunResult run;  ///< as the first spec says
+};
 
 struct StreamReport {
   std::vector<std::string> assets;  ///< files
@@ -23,6 +32,7 @@ struct StreamReport {
   const Simulation& simulation;
   bool is_checked = false;
   bool has_log = false;  ///< JSON: frames, requests and sizes of pages too
+  std::span<const TriedLayout> layouts = {};
 };
 
 /// Lines of at most 80 characters, but for names.

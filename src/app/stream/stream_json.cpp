@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/stream/report.h"
 #include "base/json_writer.h"
+#include "builder/preset.h"
 
 namespace meshlode::app {
 
@@ -71,9 +72,7 @@ void put_log(JsonWriter& json, const RunResult& run) {
   json.end_array();
 }
 
-void put_run(JsonWriter& json, const StreamReport& report, std::size_t i) {
-  const RunSpec& spec = report.specs[i];
-  const RunResult& run = report.simulation.runs[i];
+void put_run(JsonWriter& json, const StreamReport& report, const RunSpec& spec, const RunResult& run) {
   json.begin_object();
   json.optional_field("pool_bytes", spec.pool_bytes);
   json.field("megabytes_per_second", spec.link.megabytes_per_second);
@@ -107,6 +106,23 @@ void put_run(JsonWriter& json, const StreamReport& report, std::size_t i) {
     json.array_field("findings", run.findings);
   }
   json.end_object();
+}
+
+void put_layouts(JsonWriter& json, const StreamReport& report) {
+  json.key("layouts");
+  json.begin_array();
+  for (const TriedLayout& tried : report.layouts) {
+    json.begin_object();
+    json.field("page_size", tried.layout.page_kib);
+    json.field("page_order", builder::name_of(tried.layout.order));
+    if (tried.layout.root_bytes != 0) json.field("root_bytes", tried.layout.root_bytes);
+    json.field("pages", tried.pages);
+    put_demand(json, tried.demand);
+    json.key("run");
+    put_run(json, report, report.specs.front(), tried.run);
+    json.end_object();
+  }
+  json.end_array();
 }
 
 void put_pages(JsonWriter& json, const StreamScene& scene) {
@@ -154,8 +170,10 @@ std::string stream_json(const StreamReport& report) {
   put_demand(json, report.simulation.demand);
   json.key("runs");
   json.begin_array();
-  for (std::size_t i = 0; i < report.specs.size(); ++i) put_run(json, report, i);
+  for (std::size_t i = 0; i < report.specs.size(); ++i)
+    put_run(json, report, report.specs[i], report.simulation.runs[i]);
   json.end_array();
+  if (!report.layouts.empty()) put_layouts(json, report);
   if (report.has_log) put_pages(json, report.scene);
   if (report.is_checked) {
     json.field("finding_count", count_findings(report.simulation));

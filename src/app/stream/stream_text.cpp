@@ -50,6 +50,33 @@ void add_run(std::string& out, const RunSpec& spec, const RunResult& run) {
                 100.0 * run.error.share_over_fourfold);
 }
 
+void add_layout(std::string& out, const std::string& name, std::uint64_t pages, const Demand& demand,
+                const RunResult& run, double mean_of_file) {
+  append_format(out, "%-22s %5llu %7s", name.c_str(), static_cast<unsigned long long>(pages),
+                short_number(to_mb(demand.mean_bytes)).c_str());
+  append_format(out, " %5s", mean_of_file > 0.0 ? number("%.2f", demand.mean_bytes / mean_of_file).c_str() : "-");
+  append_format(out, " %5.1f%% %7s %6s", 100.0 * demand.drawn_share, short_number(to_mb(demand.root_bytes)).c_str(),
+                short_number(demand.root_error.max_px).c_str());
+  if (run.fits) {
+    append_format(out, " %6s %6s\n", short_number(run.mean_requests).c_str(), recovery_text(run.asked).c_str());
+  } else {
+    out += "  no room\n";
+  }
+}
+
+/// A line each for the file's pages and the layouts that were tried, with the pool and link of the first run.
+void add_layouts(std::string& out, const StreamReport& report) {
+  const Simulation& own = report.simulation;
+  const std::string one = number("%.3g", report.view.pixel_error);
+  out += "\nlayout, pool and link as in the first line above\n";
+  append_format(out, "%-22s %5s %7s %5s %6s %7s %6s %6s %6s\n", "", "pages", "set MB", "of it", "drawn", "root MB",
+                "alone", "req/s", ("ms, " + one + " px").c_str());
+  add_layout(out, "this asset", report.scene.pages.size(), own.demand, own.runs.front(), own.demand.mean_bytes);
+  for (const TriedLayout& tried : report.layouts) {
+    add_layout(out, tried.layout.text(), tried.pages, tried.demand, tried.run, own.demand.mean_bytes);
+  }
+}
+
 void add_findings(std::string& out, const std::string& where, const std::vector<std::string>& findings,
                   std::uint64_t count) {
   for (const std::string& text : findings) append_format(out, "finding: %s%s\n", where.c_str(), text.c_str());
@@ -99,6 +126,7 @@ std::string stream_text(const StreamReport& report) {
                   (">" + four).c_str());
   }
   for (std::size_t i = 0; i < report.specs.size(); ++i) add_run(out, report.specs[i], report.simulation.runs[i]);
+  if (!report.layouts.empty()) add_layouts(out, report);
   if (!report.is_checked) return out;
   add_findings(out, "", report.simulation.findings, report.simulation.finding_count);
   std::uint64_t frames = report.frames.size();

@@ -233,30 +233,29 @@ GroupWords encode_group(const LodDag& dag, const DagGroup& group, const ChannelP
   return out;
 }
 
-/// Groups in order, as many as fit each page; one that fits none alone.
 Result<std::vector<EncodedMesh::Page>> deal_pages(const PreparedMesh& mesh, const LodDag& dag,
                                                   const EncodeOptions& options, const std::vector<GroupWords>& groups) {
-  std::vector<EncodedMesh::Page> pages;
-  std::size_t page_bytes = 0;
-  for (std::size_t g = 0; g < groups.size(); ++g) {
-    const std::size_t group_bytes = groups[g].bytes_in_page;
-    if (kPageFrameBytes + group_bytes > format::kMaxPageBytes) {
-      return Error{ErrorCode::kUnsupported, name_mesh(mesh) + ", group " + std::to_string(g),
-                   "its " + std::to_string(groups[g].clusters.size()) + " clusters take " +
-                       std::to_string(group_bytes) + " bytes and a page holds " +
+  std::vector<std::size_t> group_bytes;
+  group_bytes.reserve(groups.size());
+  for (const GroupWords& group : groups) {
+    if (kPageFrameBytes + group.bytes_in_page > format::kMaxPageBytes) {
+      return Error{ErrorCode::kUnsupported, name_mesh(mesh) + ", group " + std::to_string(group_bytes.size()),
+                   "its " + std::to_string(group.clusters.size()) + " clusters take " +
+                       std::to_string(group.bytes_in_page) + " bytes and a page holds " +
                        std::to_string(format::kMaxPageBytes)};
     }
-    const std::size_t limit = pages.size() == 1 ? options.first_page_bytes : options.page_bytes;
-    if (pages.empty() || page_bytes + group_bytes > limit) {
-      EncodedMesh::Page page;
-      page.first_group = static_cast<std::uint32_t>(g);
-      page.first_cluster = dag.groups[g].first_cluster;
-      pages.push_back(std::move(page));
-      page_bytes = kPageFrameBytes;
+    group_bytes.push_back(group.bytes_in_page);
+  }
+  std::vector<EncodedMesh::Page> pages;
+  const std::vector<std::uint32_t> page_of = deal_groups(group_bytes, options.first_page_bytes, options.page_bytes);
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    if (page_of[g] == pages.size()) {
+      pages.emplace_back();
+      pages.back().first_group = static_cast<std::uint32_t>(g);
+      pages.back().first_cluster = dag.groups[g].first_cluster;
     }
     ++pages.back().group_count;
     pages.back().cluster_count += dag.groups[g].cluster_count;
-    page_bytes += group_bytes;
   }
   return pages;
 }
@@ -328,6 +327,22 @@ void put_errors(const DagGroup& group, float error, format::GroupRecord& record)
 bool has_aggregates(std::span<const format::GroupRecord> groups) {
   return std::any_of(groups.begin(), groups.end(),
                      [](const format::GroupRecord& group) { return (group.flags & format::kGroupAggregate) != 0; });
+}
+
+std::vector<std::uint32_t> deal_groups(std::span<const std::size_t> group_bytes, std::size_t first_page_bytes,
+                                       std::size_t page_bytes) {
+  std::vector<std::uint32_t> page_of(group_bytes.size());
+  std::uint32_t page = 0;
+  std::size_t bytes = kPageFrameBytes;
+  for (std::size_t g = 0; g < group_bytes.size(); ++g) {
+    if (g > 0 && bytes + group_bytes[g] > (page == 0 ? first_page_bytes : page_bytes)) {
+      ++page;
+      bytes = kPageFrameBytes;
+    }
+    bytes += group_bytes[g];
+    page_of[g] = page;
+  }
+  return page_of;
 }
 
 Result<EncodedMesh> encode_mesh(const PreparedMesh& mesh, const LodDag& dag, const Hierarchy& hierarchy,

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -60,6 +61,11 @@ void put_errors(const DagGroup& group, float error, format::GroupRecord& record)
 
 /// The header of a page and the zero word behind it.
 constexpr std::uint32_t kPageFrameBytes = static_cast<std::uint32_t>(sizeof(format::PageHeader)) + 4U;
+
+/// Which page each group is in, for groups in the order given: as many as fit each page, and one that fits none alone.
+/// \param group_bytes  of all members of each, in the page  \param first_page_bytes, page_bytes  a page is full there
+[[nodiscard]] std::vector<std::uint32_t> deal_groups(std::span<const std::size_t> group_bytes,
+                                                     std::size_t first_page_bytes, std::size_t page_bytes);
 
 /// Upper bound of the bytes that one cluster adds to a page, whatever its coordinates: a group fits a page where
 /// kPageFrameBytes + the sum over its members is at most format::kMaxPageBytes. `material_count` is how many

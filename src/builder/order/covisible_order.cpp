@@ -9,6 +9,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <numeric>
 #include <span>
 #include <vector>
 
@@ -62,15 +63,14 @@ Vec3d random_direction(SplitMix64& random) {
   }
 }
 
-std::vector<GroupBounds> bounds_of(const LodDag& dag, const Hierarchy& hierarchy) {
-  std::vector<GroupBounds> bounds(dag.groups.size());
+std::vector<GroupBounds> bounds_of(const OrderedGroups& mesh) {
+  std::vector<GroupBounds> bounds(mesh.groups.size());
   for (std::size_t g = 0; g < bounds.size(); ++g) {
-    const std::span members(hierarchy.cluster_spheres.data() + dag.groups[g].first_cluster,
-                            dag.groups[g].cluster_count);
-    for (const Hierarchy::Sphere& sphere : members) bounds[g].center += center_of(sphere);
+    const std::span members(mesh.clusters.data() + mesh.groups[g].first_cluster, mesh.groups[g].cluster_count);
+    for (const OrderedGroups::Cluster& member : members) bounds[g].center += center_of(member.sphere);
     bounds[g].center /= static_cast<double>(members.size());
-    for (const Hierarchy::Sphere& sphere : members) {
-      const double reach = length_of(center_of(sphere) - bounds[g].center) + double{sphere.radius};
+    for (const OrderedGroups::Cluster& member : members) {
+      const double reach = length_of(center_of(member.sphere) - bounds[g].center) + double{member.sphere.radius};
       bounds[g].radius = std::max(bounds[g].radius, reach);
     }
   }
@@ -118,23 +118,23 @@ bool is_refined(const TrainingView& view, const Hierarchy::Sphere& sphere, doubl
 }
 
 /// Which views need each group: to draw its clusters, or because a finer group cannot be drawn without it.
-std::vector<ViewBits> views_that_need(const LodDag& dag, const Hierarchy& hierarchy,
-                                      std::span<const GroupBounds> bounds) {
+std::vector<ViewBits> views_that_need(const OrderedGroups& mesh, std::span<const GroupBounds> bounds) {
   const std::vector<TrainingView> views = training_views(bounds);
-  std::vector<ViewBits> needs(dag.groups.size());
+  std::vector<ViewBits> needs(mesh.groups.size());
   parallel_for_each_index(needs.size(), 8, [&](std::size_t g) {
     needs[g].fill(0);
     for (std::size_t v = 0; v < views.size(); ++v) {
-      const bool is_needed = is_refined(views[v], hierarchy.group_spheres[g], double{hierarchy.group_errors[g]}) &&
-                             is_in_frustum(views[v], bounds[g]);
+      const OrderedGroups::Group& group = mesh.groups[g];
+      const bool is_needed =
+          is_refined(views[v], group.sphere, double{group.error}) && is_in_frustum(views[v], bounds[g]);
       if (is_needed) needs[g][v / 64] |= std::uint64_t{1} << (v % 64);
     }
   });
   // Groups lie from coarse to fine: backwards, a finer group is complete before it is handed on.
-  for (std::size_t c = dag.clusters.size(); c-- > 0;) {
-    if (!dag.clusters[c].own_group.is_valid()) continue;
-    const ViewBits& finer = needs[dag.clusters[c].own_group.value];
-    ViewBits& coarser = needs[dag.clusters[c].coarser_group.value];
+  for (std::size_t c = mesh.clusters.size(); c-- > 0;) {
+    if (mesh.clusters[c].own_group == kNoId) continue;
+    const ViewBits& finer = needs[mesh.clusters[c].own_group];
+    ViewBits& coarser = needs[mesh.clusters[c].coarser_group];
     for (std::size_t w = 0; w < finer.size(); ++w) coarser[w] |= finer[w];
   }
   return needs;
@@ -142,8 +142,8 @@ std::vector<ViewBits> views_that_need(const LodDag& dag, const Hierarchy& hierar
 
 class LevelOrder {
  public:
-  LevelOrder(const LodDag& dag, std::span<const GroupBounds> bounds, std::span<const ViewBits> needs)
-      : dag_(dag), bounds_(bounds), needs_(needs) {}
+  LevelOrder(const OrderedGroups& mesh, std::span<const GroupBounds> bounds, std::span<const ViewBits> needs)
+      : mesh_(mesh), bounds_(bounds), needs_(needs) {}
 
   /// `groups` become their order; what comes first continues `before`, where there is one.
   void order(std::span<std::uint32_t> groups, std::uint32_t before) const {
@@ -210,7 +210,7 @@ class LevelOrder {
         graph.edge_weight.push_back(weight(groups[i], groups[j]));
       }
       graph.row_start.push_back(static_cast<std::int32_t>(graph.neighbor.size()));
-      graph.node_weight.push_back(static_cast<std::int32_t>(dag_.groups[groups[i]].cluster_count));
+      graph.node_weight.push_back(static_cast<std::int32_t>(mesh_.groups[groups[i]].cluster_count));
     }
     const std::vector<std::uint32_t> half = partition_graph(graph, 2);
     std::vector<std::uint32_t> second;
@@ -226,20 +226,20 @@ class LevelOrder {
     return first;
   }
 
-  const LodDag& dag_;
+  const OrderedGroups& mesh_;
   std::span<const GroupBounds> bounds_;
   std::span<const ViewBits> needs_;
 };
 
 /// Where groups begin that may change places: of one level, and of its terminal ones or the others. And the end.
-std::vector<std::size_t> run_starts(const LodDag& dag) {
+std::vector<std::size_t> run_starts(std::span<const OrderedGroups::Group> groups) {
   std::vector<std::size_t> starts;
-  for (std::size_t g = 0; g < dag.groups.size(); ++g) {
-    const bool is_next = g == 0 || dag.groups[g].level != dag.groups[g - 1].level ||
-                         dag.groups[g].is_terminal != dag.groups[g - 1].is_terminal;
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    const bool is_next =
+        g == 0 || groups[g].level != groups[g - 1].level || groups[g].is_terminal != groups[g - 1].is_terminal;
     if (is_next) starts.push_back(g);
   }
-  starts.push_back(dag.groups.size());
+  starts.push_back(groups.size());
   return starts;
 }
 
@@ -279,20 +279,41 @@ void apply_order(std::span<const std::uint32_t> group_order, LodDag& dag, Hierar
   }
 }
 
+OrderedGroups ordered_groups(const LodDag& dag, const Hierarchy& hierarchy) {
+  OrderedGroups mesh;
+  mesh.groups.reserve(dag.groups.size());
+  for (std::size_t g = 0; g < dag.groups.size(); ++g) {
+    const DagGroup& group = dag.groups[g];
+    mesh.groups.push_back({group.first_cluster, group.cluster_count, group.level, group.is_terminal,
+                           hierarchy.group_spheres[g], hierarchy.group_errors[g]});
+  }
+  mesh.clusters.reserve(dag.clusters.size());
+  for (std::size_t c = 0; c < dag.clusters.size(); ++c) {
+    mesh.clusters.push_back(
+        {hierarchy.cluster_spheres[c], dag.clusters[c].own_group.value, dag.clusters[c].coarser_group.value});
+  }
+  return mesh;
+}
+
 }  // namespace
 
-void order_by_covisibility(LodDag& dag, Hierarchy& hierarchy) {
-  if (dag.groups.empty()) return;
-  const std::vector<GroupBounds> bounds = bounds_of(dag, hierarchy);
-  const std::vector<ViewBits> needs = views_that_need(dag, hierarchy, bounds);
-  const LevelOrder level(dag, bounds, needs);
-  std::vector<std::uint32_t> order(dag.groups.size());
-  for (std::uint32_t g = 0; g < order.size(); ++g) order[g] = g;
-  const std::vector<std::size_t> starts = run_starts(dag);
+std::vector<std::uint32_t> covisible_order(const OrderedGroups& mesh) {
+  std::vector<std::uint32_t> order(mesh.groups.size());
+  std::iota(order.begin(), order.end(), 0U);
+  if (order.empty()) return order;
+  const std::vector<GroupBounds> bounds = bounds_of(mesh);
+  const std::vector<ViewBits> needs = views_that_need(mesh, bounds);
+  const LevelOrder level(mesh, bounds, needs);
+  const std::vector<std::size_t> starts = run_starts(mesh.groups);
   parallel_for_each_index(starts.size() - 1, 1, [&](std::size_t run) {
     level.order(std::span(order).subspan(starts[run], starts[run + 1] - starts[run]), kNoId);
   });
-  apply_order(order, dag, hierarchy);
+  return order;
+}
+
+void order_by_covisibility(LodDag& dag, Hierarchy& hierarchy) {
+  if (dag.groups.empty()) return;
+  apply_order(covisible_order(ordered_groups(dag, hierarchy)), dag, hierarchy);
 }
 
 }  // namespace meshlode::builder

@@ -24,7 +24,18 @@ cmp one.json file.json && echo "the same in a file"
 grep -c '<svg' plot.svg
 tr -d ' \n' <one.json | grep -oE '"instances":[0-9]+|"frames":[0-9]+|"jumps":2|"finding_count":[1-9]' | sort -u
 run stream rock.lode crystal.lode --scene scene.txt --path path.csv --quiet
+# Pages of other builds are what these builds make: pages, working set, drawn share, first pages and their error.
+"$MESHLODE" build --quiet "$DATA/rock.glb" -o small.lode --preset fast --page-size 32 --page-order covisible
+"$MESHLODE" stream small.lode --fps 20 --layout try:16 | awk '$1 == "this" { print $3, $4, $6, $7, $8 }' >built.txt
+"$MESHLODE" stream rock.lode --fps 20 --layout try:32/covisible,16/level/65536 >out.txt; echo "exit $?"
+awk '$1 == "32/covisible" { print $2, $3, $5, $6, $7 }' out.txt | cmp - built.txt && echo "the same as a build's"
+tail -n 5 out.txt | words
+awk 'length > 80 { print "longer than 80 characters" }' out.txt
+json stream stream rock.lode --fps 20 --layout try:32/covisible,16/level/65536 --format json
 # What cannot be.
+run stream rock.lode --layout 32
+run stream rock.lode --layout try:
+run stream rock.lode --layout try:48
 run stream rock.lode rock.lode
 run stream scene.txt
 run stream rock.lode --pool 0
