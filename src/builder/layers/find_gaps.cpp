@@ -115,8 +115,13 @@ class GapFinder {
     for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(due); ++i) {
       const Vec3d from = sample_point(caster.corners, i);
       const std::uint64_t first = places == 0 ? 0 : random.below(places);
-      const LayerRay ray{from, caster.normal * gaps_[mesh].reach, caster.normal, shape.faces_both_ways(triangle),
-                         kLeastGap};
+      const LayerRay ray{from,
+                         caster.normal * gaps_[mesh].reach,
+                         caster.normal,
+                         shape.faces_both_ways(triangle),
+                         kLeastGap,
+                         mesh,
+                         shape.look_of(triangle)};
       LayerHits hits;
       if (is_asked) placed_.meet_itself(mesh, ray, hits);
       for (std::size_t k = 0; k < std::min(kPlaces, places) && !hits.is_crowded; ++k) {
@@ -176,7 +181,9 @@ GapSummary summarize(const MeshGaps& gaps) {
 std::vector<MeshGaps> find_gaps(const scene::Scene& scene, std::span<const std::uint8_t> wants) {
   const bool any = std::any_of(wants.begin(), wants.end(), [](std::uint8_t want) { return want != 0; });
   // A label has no room for more materials.
-  if (!any || scene.materials.size() > kMaterialBits) return std::vector<MeshGaps>(scene.meshes.size());
+  const bool has_too_many = scene.materials.size() > kMaterialBits;
+  const bool is_plain = scene.meshes.size() == 1 && plain_look(scene.meshes[0], scene.materials) != kNoId;
+  if (!any || is_plain || has_too_many) return std::vector<MeshGaps>(scene.meshes.size());
   std::vector<std::uint8_t> stands_alone(scene.meshes.size(), 0);
   for (std::size_t i = 0; i < scene.meshes.size(); ++i) stands_alone[i] = scene.meshes[i].is_deformed ? 1 : 0;
   GapFinder finder(scene, wants, stands_alone);

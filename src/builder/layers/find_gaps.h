@@ -2,7 +2,8 @@
 // Layers: surfaces that lie closely above one another and face the same way, such as a plate in a recess, a strap on
 // cloth, a decal. Where one of two moves through the gap between them, what was hidden comes to lie in front of what
 // was seen, although neither has moved farther than its error allows. So gaps are found in the source, before any mesh
-// is built, and the simplifier is held to them (gap_label.h, simplify/gap_guard.h).
+// is built, and the simplifier is held to them (gap_label.h, simplify/gap_guard.h). Surfaces of one mesh and one
+// material that has neither textures nor vertex colours look the same: between them no gap is looked for.
 #pragma once
 
 #include <cstdint>

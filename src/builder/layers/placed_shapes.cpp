@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <tuple>
 
 #include "base/ids.h"
@@ -40,9 +41,16 @@ bool is_less(const TriangleCorners& a, const TriangleCorners& b) {
                                       [](const Vec3d& p, const Vec3d& q) { return is_less(p, q); });
 }
 
+std::uint32_t look_of(const scene::Primitive& primitive, std::span<const scene::SceneMaterial> materials) {
+  if (!primitive.colors.empty() || primitive.material.value >= materials.size()) return kNoId;
+  const scene::SceneMaterial& material = materials[primitive.material.value];
+  return material.textures.empty() && material.uv_sets_used == 0 ? primitive.material.value : kNoId;
+}
+
 void add_primitives(const scene::SourceMesh& mesh, std::span<const scene::SceneMaterial> materials, Shape& shape) {
   const bool is_one = mesh.primitives.size() == 1;
   bool any_double_sided = false;
+  shape.plain_look = plain_look(mesh, materials);
   for (const scene::Primitive& primitive : mesh.primitives) {
     const auto first = static_cast<std::uint32_t>(shape.joined.size());
     if (!is_one) shape.joined.insert(shape.joined.end(), primitive.positions.begin(), primitive.positions.end());
@@ -54,6 +62,7 @@ void add_primitives(const scene::SourceMesh& mesh, std::span<const scene::SceneM
       shape.triangles.push_back({first + at[0], first + at[1], first + at[2]});
     }
     shape.is_double_sided.resize(shape.triangles.size(), is_double_sided ? 1 : 0);
+    if (shape.plain_look == kNoId) shape.looks.resize(shape.triangles.size(), look_of(primitive, materials));
   }
   if (!any_double_sided) shape.is_double_sided = {};
   shape.positions =
@@ -90,6 +99,7 @@ void meet_shape(const Shape& shape, std::uint32_t mesh, const LayerRay& ray, con
     hits.is_crowded = ++tested > kMostTested;
     if (hits.is_crowded) return false;
     const std::uint32_t triangle = shape.tree.triangle_at(slot);
+    if (mesh == ray.mesh && ray.look != kNoId && shape.look_of(triangle) == ray.look) return true;
     const bool both_ways = ray.faces_both_ways || shape.faces_both_ways(triangle);
     const TriangleCorners corners = canonical_corners(shape, triangle);
     const double along_ray = meet(corners, ray, both_ways, shape.per_unit, back), at = std::abs(along_ray);
@@ -113,6 +123,17 @@ TriangleCorners canonical_corners(const Shape& shape, std::uint32_t triangle) {
       std::min_element(corners.begin(), corners.end(), [](const Vec3d& p, const Vec3d& q) { return is_less(p, q); }),
       corners.end());
   return corners;
+}
+
+std::uint32_t plain_look(const scene::SourceMesh& mesh, std::span<const scene::SceneMaterial> materials) {
+  std::optional<std::uint32_t> only;
+  for (const scene::Primitive& primitive : mesh.primitives) {
+    if (primitive.indices.empty()) continue;
+    const std::uint32_t look = look_of(primitive, materials);
+    if (only && *only != look) return kNoId;
+    only = look;
+  }
+  return only.value_or(kNoId);
 }
 
 Shape make_shape(const scene::SourceMesh& mesh, std::span<const scene::SceneMaterial> materials) {
@@ -186,6 +207,7 @@ void PlacedShapes::place(const scene::Scene& scene, std::span<const std::uint8_t
 }
 
 void PlacedShapes::meet_itself(std::uint32_t mesh, const LayerRay& ray, LayerHits& hits) const {
+  if (shapes_[mesh].plain_look != kNoId) return;
   meet_shape(shapes_[mesh], mesh, ray, nullptr, hits);
 }
 
@@ -200,6 +222,7 @@ void PlacedShapes::meet_others(std::uint32_t mesh, std::size_t place, const Laye
     const Place& there = places_[other];
     const auto is_apart = [&](int k) { return high[k] < there.low[k] || low[k] > there.high[k]; };
     if (other == own || is_apart(0) || is_apart(1) || is_apart(2)) return true;
+    if (there.mesh == mesh && shapes_[mesh].plain_look != kNoId) return true;
     if (++neighbours > kMostNeighbours) return false;
     LayerRay moved = ray;
     moved.from = there.inverse * (from - there.offset);

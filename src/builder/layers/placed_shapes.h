@@ -23,6 +23,8 @@ struct Shape {
   std::span<const Vec3d> positions;
   std::vector<std::array<std::uint32_t, 3>> triangles;
   std::vector<std::uint8_t> is_double_sided;  ///< per triangle; empty: none is
+  std::uint32_t plain_look = kNoId;           ///< plain_look()
+  std::vector<std::uint32_t> looks;           ///< the same per triangle; empty: all have plain_look
   Vec3d low{0.0}, high{0.0};
   double diagonal = 0.0;  ///< 0: there is nothing to meet, or nothing whose square is a sound double
   double per_unit = 1.0;  ///< a power of two that makes the diagonal about 1
@@ -31,7 +33,14 @@ struct Shape {
   [[nodiscard]] bool faces_both_ways(std::uint32_t triangle) const {
     return !is_double_sided.empty() && is_double_sided[triangle] != 0;
   }
+  [[nodiscard]] std::uint32_t look_of(std::uint32_t triangle) const {
+    return looks.empty() ? plain_look : looks[triangle];
+  }
 };
+
+/// The material of all of a mesh, where that is one colour all over: nobody sees which of its surfaces is in front of
+/// another. kNoId: there are several, or textures or vertex colours.
+[[nodiscard]] std::uint32_t plain_look(const scene::SourceMesh& mesh, std::span<const scene::SceneMaterial> materials);
 
 /// Empty for a mesh that a build refuses: an index out of range, a position that is not finite.
 [[nodiscard]] Shape make_shape(const scene::SourceMesh& mesh, std::span<const scene::SceneMaterial> materials);
@@ -45,6 +54,8 @@ struct LayerRay {
   Vec3d facing{0.0};  ///< the normal of the triangle that it starts from, of unit length
   bool faces_both_ways = false;
   double least = 0.0;  ///< nearer than this nothing counts: the triangle itself
+  std::uint32_t mesh = kNoId,
+                look = kNoId;  ///< of that triangle: others of this mesh that look the same are passed over
 };
 
 struct LayerHit {

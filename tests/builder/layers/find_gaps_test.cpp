@@ -34,10 +34,15 @@ Primitive sheet(double y, bool faces_down = false) {
   return out;
 }
 
+/// One mesh. Each primitive has a colour of its own.
 Scene scene_of(std::vector<Primitive> primitives) {
   scene::SourceMesh mesh;
   mesh.primitives = std::move(primitives);
-  return lab::as_scene(std::move(mesh));
+  for (std::uint32_t i = 0; i < mesh.primitives.size(); ++i) mesh.primitives[i].material = MaterialId(i);
+  const std::size_t colors = mesh.primitives.size();
+  Scene scene = lab::as_scene(std::move(mesh));
+  scene.materials.resize(colors);
+  return scene;
 }
 
 /// A mesh and an instance for each.
@@ -161,10 +166,44 @@ TEST(FindGaps, NoGapIsFoundWithoutAnotherLayer) {
   EXPECT_TRUE(are_none(gaps_of(Scene{})));
 }
 
+TEST(FindGaps, SurfacesOfOneMeshThatLookTheSameHaveNone) {
+  const std::size_t both = 4U * kCells * kCells;
+  Scene scene = scene_of({sheet(0.0), sheet(0.01)});
+  scene.meshes[0].primitives[1].material = MaterialId(0U);
+  EXPECT_TRUE(gaps_of(scene)[0].codes.empty());
+  // What varies over a surface is seen to be hidden: a texture, of whatever kind, and vertex colours.
+  Scene textured = scene;
+  textured.materials[0].textures.emplace_back();
+  EXPECT_EQ(count_gaps(gaps_of(textured)[0], 0.01), both);
+  textured = scene;
+  textured.materials[0].uv_sets_used = 1;  // of which nothing more is known
+  EXPECT_EQ(count_gaps(gaps_of(textured)[0], 0.01), both);
+  Scene colored = scene;
+  for (Primitive& primitive : colored.meshes[0].primitives) primitive.colors.resize(primitive.positions.size());
+  EXPECT_EQ(count_gaps(gaps_of(colored)[0], 0.01), both);
+  colored.meshes[0].primitives[0].colors.clear();
+  EXPECT_EQ(count_gaps(gaps_of(colored)[0], 0.01), both);
+  // Between others of another colour each has the gap to these.
+  Scene three = scene_of({sheet(0.0), sheet(0.01), sheet(0.02)});
+  three.meshes[0].primitives[2].material = MaterialId(0U);
+  EXPECT_EQ(count_gaps(gaps_of(three)[0], 0.01), both + both / 2);
+  three.meshes[0].primitives[1].material = MaterialId(0U);
+  three.meshes[0].primitives[2].material = MaterialId(2U);
+  const std::vector<MeshGaps> gaps = gaps_of(three);
+  expect_side({gaps[0].reach, {gaps[0].codes.begin() + both, gaps[0].codes.end()}}, false);
+  // Instances of a mesh look the same, other meshes need not.
+  Scene twice = scene_of({sheet(0.0)});
+  twice.instances.push_back(twice.instances[0]);
+  twice.instances[1].transform[3].y = 0.01;
+  EXPECT_TRUE(gaps_of(twice)[0].codes.empty());
+  twice.meshes.push_back(lab::as_mesh(lab::scaled(sheet(0.5), 0.1)));
+  EXPECT_TRUE(gaps_of(twice)[0].codes.empty());
+  twice.meshes[0].primitives[0].colors.resize(twice.meshes[0].primitives[0].positions.size());
+  EXPECT_EQ(count_gaps(gaps_of(twice)[0], 0.01), both / 2);
+}
+
 TEST(FindGaps, BothSidesOfADoubleSidedMaterialCount) {
   Scene scene = scene_of({sheet(0.0), sheet(0.01, true)});
-  scene.meshes[0].primitives[1].material = MaterialId(1U);
-  scene.materials.push_back(scene.materials[0]);
   scene.materials[1].double_sided = true;
   EXPECT_EQ(count_gaps(gaps_of(scene)[0], 0.01), 4U * kCells * kCells);
 }
@@ -273,7 +312,6 @@ TEST(FindGaps, WhatHasNoAreaAndNoExtentIsPassedOver) {
   const std::size_t usual = 4U * kCells * kCells;
   Scene degenerate = scene_of({sheet(0.0), lab::make_zero_areas(4), sheet(0.01)});
   Primitive& ball = degenerate.meshes[0].primitives[1];
-  ball.material = MaterialId(0U);
   for (Vec3d& p : ball.positions) p = p * 0.1 + Vec3d(0.0, 0.5, 0.0);
   EXPECT_EQ(count_gaps(gaps_of(degenerate)[0], 0.01), usual);
   for (const double bad : {inf, nan, 1e300, -1e308}) {
