@@ -120,28 +120,12 @@ void write_entry(JsonWriter& json, const BulkInput& input, const FileOutcome& ou
   json.end_object();
 }
 
-/// How many files may be worked on at a time: as many as there are threads, fewer where the largest of them together
-/// would need more memory than there is. One is always worked on, as if it had been given alone.
 std::size_t files_at_once(const std::vector<BulkInput>& files, std::uint64_t max_memory) {
-  std::uint64_t limit = max_memory;
-  if (limit == 0) {
-    const auto available = available_memory();
-    if (!available) return thread_limit();
-    limit = *available + resident_memory();
-  }
-  std::vector<std::uint64_t> needs;
+  std::vector<std::uint64_t> bytes;
   for (const BulkInput& input : files) {
-    const std::uint64_t bytes =
-        app::weigh_scene(input.path) + (input.source.empty() ? 0 : app::weigh_scene(input.source));
-    needs.push_back(std::min(bytes, ~std::uint64_t{0} / kMemoryPerByte) * kMemoryPerByte);
+    bytes.push_back(app::weigh_scene(input.path) + (input.source.empty() ? 0 : app::weigh_scene(input.source)));
   }
-  std::sort(needs.rbegin(), needs.rend());
-  std::uint64_t sum = kMemoryOfProcess;
-  std::size_t count = 0;
-  while (count < std::min(needs.size(), thread_limit()) && sum <= limit && needs[count] <= limit - sum) {
-    sum += needs[count++];
-  }
-  return std::max<std::size_t>(1, count);
+  return count_at_once(std::move(bytes), max_memory);
 }
 
 FileOutcome work_on(const BulkVerb& verb, const BulkInput& input) {
@@ -163,6 +147,25 @@ FileOutcome work_on(const BulkVerb& verb, const BulkInput& input) {
 }
 
 }  // namespace
+
+std::size_t count_at_once(std::vector<std::uint64_t> bytes, std::uint64_t max_memory) {
+  std::uint64_t limit = max_memory;
+  if (limit == 0) {
+    const auto available = available_memory();
+    if (!available) return thread_limit();
+    limit = *available + resident_memory();
+  }
+  std::sort(bytes.rbegin(), bytes.rend());
+  std::uint64_t sum = kMemoryOfProcess;
+  std::size_t count = 0;
+  while (count < std::min(bytes.size(), thread_limit())) {
+    const std::uint64_t need = std::min(bytes[count], ~std::uint64_t{0} / kMemoryPerByte) * kMemoryPerByte;
+    if (sum > limit || need > limit - sum) break;
+    sum += need;
+    ++count;
+  }
+  return std::max<std::size_t>(1, count);
+}
 
 void write_document(JsonWriter& json, std::string_view document, std::size_t depth) {
   std::string inner;

@@ -6,15 +6,19 @@
 #include <utility>
 #include <vector>
 
+#include "app/batch/jobs/weigh.h"
 #include "app/batch/shard/read_manifest.h"
 #include "app/overview/overview.h"
+#include "base/parallel.h"
 #include "base/try.h"
+#include "bulk.h"
 #include "doctor_advice.h"
 #include "kept_manifest.h"
 #include "options.h"
 #include "output_name.h"
 #include "outputs.h"
 #include "streams.h"
+#include "thumbnail.h"
 #include "verb.h"
 
 namespace meshlode::cli {
@@ -48,10 +52,30 @@ std::string text_of(const app::Overview& overview, const ReportFile& file, const
   return app::batch_page(overview, title, file.path == kStream ? "" : fs::path(file.path).parent_path().string());
 }
 
+/// So that the largest assets together stay below the limit.
+std::size_t assets_at_once(const app::Manifest& manifest, std::uint64_t max_memory) {
+  std::vector<std::uint64_t> bytes;
+  for (const app::JobResult& result : manifest.results) {
+    if (result.has_asset()) bytes.push_back(app::weigh_scene(result.job.output));
+  }
+  return count_at_once(std::move(bytes), max_memory);
+}
+
+void add_thumbnail(const run::Asset& asset, app::OverviewAsset& row) {
+  Result<Thumbnail> drawn = draw_thumbnail(asset);
+  if (!drawn) {
+    row.thumbnail_note = drawn.error().message();
+    return;
+  }
+  row.thumbnail = std::move(drawn->webp);
+  row.thumbnail_note = std::move(drawn->note);
+}
+
 int run_report(const Verb& verb, std::span<char* const> args) {
   std::string path, output = kStream, against;
   std::optional<std::string> format;
-  std::uint32_t jobs = 0;
+  bool no_thumbnails = false;
+  BulkWords resources;
   OptionParser parser(verb);
   parser.add_positional("MANIFEST", path, "manifest that 'meshlode build --manifest' or 'meshlode merge' wrote");
   parser.group("Output");
@@ -62,12 +86,16 @@ int run_report(const Verb& verb, std::span<char* const> args) {
                    "html: a page for a browser; markdown: for a merge request; sarif: for code hosts; annotations: "
                    "workflow commands (default: html)",
                    {"html", "markdown", "sarif", "annotations"});
+  parser.add_flag("--no-thumbnails", no_thumbnails,
+                  "leave the pictures of the assets out of the page, to save time and bytes");
   parser.group("Input");
   parser.add_value("--against OLD", against, "manifest of an earlier batch, to show what grew (default: none)");
   parser.group("Resources");
-  add_jobs_option(parser, jobs);
+  add_bulk_resources(parser, resources);
   if (const auto exit_code = parser.parse(args)) return *exit_code;
 
+  const auto max_memory = parse_max_memory(resources.max_memory);
+  if (!max_memory) return print_error(max_memory.error());
   auto manifest = read_with_results(path);
   if (!manifest) return print_error(manifest.error());
   std::optional<app::Manifest> old;
@@ -89,12 +117,19 @@ int run_report(const Verb& verb, std::span<char* const> args) {
     if (const Status free = claim(file); !free) return print_error(free.error());
   }
   const std::string title = fs::path(path).filename().string();
+  const bool draws = !no_thumbnails && files.front().format == "html";
   std::optional<app::Overview> overview;
-  JobLimit limit(jobs);
+  JobLimit limit(resources.jobs);
   limit.run([&] {
+    const std::size_t at_once = assets_at_once(*manifest, *max_memory);
     overview = app::make_overview(
         std::move(*manifest), old ? &*old : nullptr,
-        [](const run::Asset& asset, std::vector<app::Diagnosis>& diagnoses) { add_advice(asset, diagnoses); });
+        [&](const run::Asset& asset, app::OverviewAsset& row, std::vector<app::Diagnosis>& diagnoses) {
+          add_advice(asset, diagnoses);
+          row.pixel_triangles = count_pixel_triangles(asset);
+          if (draws) add_thumbnail(asset, row);
+        },
+        at_once);
   });
   for (const ReportFile& file : files) {
     const Status written = write_output(file.path, text_of(*overview, file, title));
@@ -108,7 +143,8 @@ int run_report(const Verb& verb, std::span<char* const> args) {
 const Verb kReportVerb{
     "report", "show a batch on one page: status, bytes, what grew, faults, times",
     "Reads the manifest of a batch and its assets, and writes one self-contained page: counts, a table to sort and "
-    "search, what the bytes are spent on, the largest changes against an earlier batch, faults by severity, use of the "
+    "search, pictures, what the bytes are spent on, the largest changes against an earlier batch, faults by severity, "
+    "use of the "
     "cache, times.\n\n"
     "The same as a summary for a merge request, as SARIF 2.1.0 and as workflow commands. Paths are those of the "
     "manifest: run it in the folder in which the batch ran. The exit status is 0 whatever the batch's was.",

@@ -55,6 +55,9 @@ void write_asset(JsonWriter& w, const OverviewAsset& asset, const fs::path& fold
   w.field("cache", name_of(r.cache));
   if (r.cache == CacheUse::kMiss) w.field("reason", r.reason);
   w.field("triangles", asset.triangles);
+  if (asset.pixel_triangles) w.field("at_pixel", *asset.pixel_triangles);
+  if (!asset.thumbnail.empty()) w.field("thumbnail", encode_base64(asset.thumbnail));
+  if (!asset.thumbnail_note.empty()) w.field("thumbnail_note", asset.thumbnail_note);
   w.field("stuck", asset.stuck_groups);
   w.array_field("streams", asset.streams);
   write_findings(w, asset.findings);

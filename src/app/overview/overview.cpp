@@ -41,7 +41,7 @@ std::string text_of(const Diagnosis& diagnosis) {
   return diagnosis.title + ": " + grouped_digits(diagnosis.count) + ". Remedy: " + diagnosis.remedy;
 }
 
-Status look_at_asset(const AdviseOnAsset& advise, OverviewAsset& row) {
+Status read_asset(const LookAtAsset& look, OverviewAsset& row) {
   const std::string path = row.result.job.output.string();
   TRY_LET(asset, run::Asset::open(path));
   if (hash128(asset->bytes()) != row.result.asset_hash) {
@@ -54,7 +54,7 @@ Status look_at_asset(const AdviseOnAsset& advise, OverviewAsset& row) {
   row.stuck_groups = info.stuck_groups;
   count_streams(*asset, info, row);
   std::vector<Diagnosis> diagnoses = diagnose_asset(*asset);
-  if (advise) advise(*asset, diagnoses);
+  if (look) look(*asset, row, diagnoses);
   rank(diagnoses);
   for (const Diagnosis& diagnosis : diagnoses) {
     row.findings.push_back({diagnosis.id, severity_of(diagnosis.share), text_of(diagnosis)});
@@ -94,6 +94,18 @@ std::uint64_t Overview::bytes() const {
   return sum;
 }
 
+std::uint64_t Overview::triangles() const {
+  std::uint64_t sum = 0;
+  for (const OverviewAsset& asset : assets) sum += asset.triangles;
+  return sum;
+}
+
+std::uint64_t Overview::pixel_triangles() const {
+  std::uint64_t sum = 0;
+  for (const OverviewAsset& asset : assets) sum += asset.pixel_triangles.value_or(0);
+  return sum;
+}
+
 std::uint64_t Overview::old_bytes() const {
   std::uint64_t sum = 0;
   for (const OverviewAsset& asset : assets) sum += asset.old_bytes.value_or(0);
@@ -114,7 +126,7 @@ std::vector<const OverviewAsset*> Overview::changed() const {
   return out;
 }
 
-Overview make_overview(Manifest manifest, const Manifest* old, const AdviseOnAsset& advise) {
+Overview make_overview(Manifest manifest, const Manifest* old, const LookAtAsset& look, std::size_t at_once) {
   Overview overview;
   overview.generator = std::move(manifest.generator);
   overview.versions = std::move(manifest.versions);
@@ -136,13 +148,13 @@ Overview make_overview(Manifest manifest, const Manifest* old, const AdviseOnAss
     old_bytes.erase(before);
   }
   for (const auto& [output, bytes] : old_bytes) overview.gone.push_back({output.string(), bytes});
-  parallel_for_each_in_order(overview.assets.size(), thread_limit(), [&](std::size_t i) {
+  parallel_for_each_in_order(overview.assets.size(), at_once, [&](std::size_t i) {
     OverviewAsset& asset = overview.assets[i];
     for (const JobWarning& warning : asset.result.warnings) {
       asset.findings.push_back({warning.id, "warning", warning.text});
     }
     if (!asset.result.has_asset()) return;
-    const Status done = guarded(asset.result.job.output, [&] { return look_at_asset(advise, asset); });
+    const Status done = guarded(asset.result.job.output, [&] { return read_asset(look, asset); });
     if (!done) asset.unread = done.error().message();
   });
   return overview;

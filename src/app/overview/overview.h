@@ -34,6 +34,9 @@ struct OverviewAsset {
   std::optional<std::uint64_t> old_bytes;  ///< of the older manifest's asset of this output, where it had one
   std::string unread;                      ///< why the asset says nothing here; empty: it does
   std::uint64_t triangles = 0, stuck_groups = 0;
+  std::optional<std::uint64_t> pixel_triangles;  ///< of the cut that `render` draws by its defaults
+  std::vector<std::uint8_t> thumbnail;           ///< WebP; empty: there is none
+  std::string thumbnail_note;                    ///< what the thumbnail lacks, or why there is none
   std::array<std::uint64_t, kOverviewStreams.size()> streams{};
   std::vector<OverviewFinding> findings;  ///< worst first
 
@@ -58,16 +61,21 @@ struct Overview {
   [[nodiscard]] std::size_t count(CacheUse use) const;
   [[nodiscard]] std::size_t count_findings(const std::string& severity) const;
   [[nodiscard]] std::uint64_t bytes() const;
+  [[nodiscard]] std::uint64_t triangles() const;
+  [[nodiscard]] std::uint64_t pixel_triangles() const;  ///< of those that are known
   [[nodiscard]] std::uint64_t old_bytes() const;
   /// Assets whose bytes changed, the largest change first: growth before shrinkage of the same size.
   [[nodiscard]] std::vector<const OverviewAsset*> changed() const;
 };
 
-/// Adds to an asset's diagnoses what the caller knows beside them.
-using AdviseOnAsset = std::function<void(const run::Asset& asset, std::vector<Diagnosis>& diagnoses)>;
+/// Adds what the caller alone can find: the cut's triangles and the thumbnail to a row, more to an asset's diagnoses.
+/// Called from several threads at once.
+using LookAtAsset = std::function<void(const run::Asset& asset, OverviewAsset& row, std::vector<Diagnosis>& diagnoses)>;
 
-/// Reads each asset where the manifest says that it is; one that is not there, or has other bytes, is `unread`.
-[[nodiscard]] Overview make_overview(Manifest manifest, const Manifest* old, const AdviseOnAsset& advise);
+/// Reads each asset where the manifest says that it is, at most `at_once` at a time; one that is not there, or has
+/// other bytes, is `unread`.
+[[nodiscard]] Overview make_overview(Manifest manifest, const Manifest* old, const LookAtAsset& look,
+                                     std::size_t at_once);
 
 /// A page for a browser, of its own: data as JSON, rows made as they are scrolled to. `folder`: where it will lie, for
 /// its links to scenes and assets; relative to the current one.

@@ -84,6 +84,10 @@ std::string overview_markdown(const Overview& overview) {
     table.row({"from the cache", std::to_string(hits) + " of " + std::to_string(hits + misses)});
   }
   table.row({"bytes", grouped_digits(overview.bytes())});
+  if (overview.triangles() > 0) {
+    table.row({"triangles", grouped_digits(overview.triangles()) + ", " + grouped_digits(overview.pixel_triangles()) +
+                                " at one pixel of error, framed in 1280x720"});
+  }
   std::string found;
   for (const char* severity : {"high", "medium", "low", "warning"}) {
     const std::size_t count = overview.count_findings(severity);

@@ -4,7 +4,6 @@
 (() => {
   const data = JSON.parse(document.getElementById('data').textContent);
   const byId = id => document.getElementById(id);
-  const ROW = 26;  // pixels, as overview.css has it
   const COLORS = ['#4e79a7', '#76b7b2', '#59a14f', '#edc948', '#9c755f', '#bab0ac', '#b07aa1', '#f28e2b', '#888888'];
   const SEVERITIES = ['high', 'medium', 'low', 'warning'];
 
@@ -28,7 +27,18 @@
   const plural = (count, word) => number(count) + ' ' + word + (count === 1 ? '' : 's');
   const sum = (list, value) => list.reduce((all, item) => all + value(item), 0);
 
+  // A picture is decoded when a row or the detail shows it, and never before.
+  const thumbnail = asset => {
+    const image = make('img');
+    image.src = 'data:image/webp;base64,' + asset.thumbnail;
+    image.alt = '';
+    return image;
+  };
+
   const assets = data.assets;
+  const hasPictures = assets.some(a => a.thumbnail);
+  document.body.classList.toggle('pictures', hasPictures);
+  const ROW = hasPictures ? 44 : 26;  // pixels, as overview.css has it
   for (const asset of assets) {
     asset.made = !['failed', 'skipped'].includes(asset.status);
     asset.change = asset.made && asset.old !== undefined ? asset.bytes - asset.old : 0;
@@ -72,6 +82,10 @@
       add('bytes', number(bytes));
     }
     add('triangles', number(sum(assets, a => a.triangles)));
+    if (assets.some(a => a.at_pixel !== undefined)) {
+      add('at one pixel', number(sum(assets, a => a.at_pixel || 0)) +
+        ' triangles drawn at one pixel of error, each asset by itself, framed in 1280 × 720');
+    }
     add('stuck groups', number(sum(assets, a => a.stuck)));
     for (const severity of SEVERITIES) {
       const count = sum(assets, a => a.findings.filter(f => f[0] === severity).length);
@@ -208,8 +222,9 @@
     ['bytes', a => a.made ? number(a.bytes) : '', a => a.made ? a.bytes : -1],
     ['change', a => a.change ? signed(a.change, number) : '', a => a.change],
     ['triangles', a => a.triangles ? number(a.triangles) : '', a => a.triangles],
+    ['at 1 px', a => a.at_pixel !== undefined ? number(a.at_pixel) : '', a => a.at_pixel ?? -1],
     ['stuck', a => a.stuck ? number(a.stuck) : '', a => a.stuck],
-    ['faults', a => a.findings.length ? a.findings.length + ' ' + SEVERITIES[a.worst].charAt(0) : '', a => a.worst < 9 ? -a.worst * 1e4 + a.findings.length : -1e9],
+    ['faults', a => a.findings.length ? a.findings.length + ' ' + ['high', 'med.', 'low', 'warn'][a.worst] : '', a => a.worst < 9 ? -a.worst * 1e4 + a.findings.length : -1e9],
     ['cache', a => a.cache === 'none' ? '' : a.cache, a => a.cache],
     ['seconds', a => a.seconds.toFixed(2), a => a.seconds],
   ];
@@ -231,6 +246,14 @@
     byId('table').scrollTop = 0;
     showRows();
   }
+  // The file's name, for that is what differs, and its folder below it.
+  function showName(asset) {
+    const frame = make('span', undefined, 'picture'), text = make('span', undefined, 'name');
+    if (asset.thumbnail) frame.append(thumbnail(asset));
+    const end = asset.output.lastIndexOf('/') + 1;
+    text.append(make('span', asset.output.slice(end)), make('span', asset.output.slice(0, end), 'folder'));
+    return [frame, text];
+  }
   function showRows() {
     const table = byId('table');
     const first = Math.max(0, Math.floor(table.scrollTop / ROW) - 4);
@@ -244,6 +267,7 @@
       COLUMNS.forEach(([name, text], c) => {
         const value = text(asset), cell = make('span', value);
         cell.title = clean(value);
+        if (c === 0 && hasPictures) cell.replaceChildren(...showName(asset));
         if (c === 1) cell.className = asset.made && !asset.unread ? 'good' : 'bad';
         if (c === 3 && asset.change > 0) cell.className = 'bad';
         row.append(cell);
@@ -266,9 +290,15 @@
       links.append(anchor, ' ');
     }
     detail.replaceChildren(head, links, make('p', 'from ' + asset.input));
+    if (asset.thumbnail) detail.prepend(thumbnail(asset));
     if (asset.error) detail.append(make('p', asset.error, 'bad'));
     if (asset.unread) detail.append(make('p', asset.unread, 'bad'));
+    if (asset.thumbnail_note) detail.append(make('p', 'thumbnail: ' + asset.thumbnail_note, 'bad'));
     if (asset.made) detail.append(make('p', streamText(asset)));
+    if (asset.at_pixel !== undefined) {
+      detail.append(make('p', number(asset.triangles) + ' triangles, ' + number(asset.at_pixel) +
+        ' drawn at one pixel of error, framed in 1280 × 720'));
+    }
     if (asset.reason) detail.append(make('p', 'built, because ' + asset.reason));
     const costs = [asset.seconds.toFixed(2) + ' s, of processors ' + asset.cpu.toFixed(2) + ' s'];
     if (asset.memory) costs.push(size(asset.memory) + ' of memory');

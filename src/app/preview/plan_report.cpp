@@ -82,7 +82,10 @@ void add_images(std::string& out, const std::vector<PlannedImage>& images) {
   }
   append_format(out, "images: %s, %s decoded with mip levels on a GPU", byte_size_text(bytes).c_str(),
                 byte_size_text(gpu).c_str());
-  if (stored_gpu != gpu) append_format(out, ", %s as they will be stored", byte_size_text(stored_gpu).c_str());
+  if (stored_gpu != gpu) {
+    append_format(out, ", %s as they will be stored, by their heads: a damaged image stays as it is",
+                  byte_size_text(stored_gpu).c_str());
+  }
   out += "\n";
   for (std::size_t i = 0; i < images.size() && i < kMaxRows; ++i) {
     const PlannedImage& image = images[i];

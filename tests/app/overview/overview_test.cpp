@@ -58,7 +58,7 @@ Overview hostile_overview() {
     results.back().cache = CacheUse::kMiss;
     results.back().reason = name;
   }
-  return make_overview(manifest_of(std::move(results)), nullptr, {});
+  return make_overview(manifest_of(std::move(results)), nullptr, {}, 1);
 }
 
 std::size_t count_of(std::string_view text, std::string_view part) {
@@ -96,7 +96,7 @@ TEST(BatchPage, NoNameIsMarkup) {
 TEST(BatchPage, LinksGoFromThePageToTheAsset) {
   Manifest manifest = manifest_of({job("a b.lode", JobStatus::kBuilt)});
   manifest.results[0].job.output = "javascript:pwned()";
-  const Overview overview = make_overview(std::move(manifest), nullptr, {});
+  const Overview overview = make_overview(std::move(manifest), nullptr, {}, 1);
   EXPECT_NE(batch_page(overview, "t", "").find("\"link\": \"./javascript%3Apwned%28%29\""), std::string::npos);
   EXPECT_NE(batch_page(overview, "t", "deep/er").find("\"link\": \"../../javascript%3A"), std::string::npos);
 }
@@ -171,7 +171,7 @@ TEST(Overview, ComparesWithTheOlderBatchByOutput) {
   const Overview now = make_overview(
       manifest_of({job("a", JobStatus::kBuilt, 90), job("b", JobStatus::kUnchanged, 100), job("c", JobStatus::kFailed),
                    job("new", JobStatus::kBuilt, 7), job("e", JobStatus::kBuilt, 5)}),
-      &old, {});
+      &old, {}, 1);
   EXPECT_EQ(now.assets[0].growth(), -10);
   EXPECT_EQ(now.assets[1].growth(), 0);
   EXPECT_FALSE(now.assets[2].growth()) << "it has no asset now";
@@ -194,7 +194,7 @@ TEST(Overview, TheLargestChangeIsFirstWhicheverWay) {
     after.push_back(job(std::to_string(i), JobStatus::kBuilt, sizes[i]));
   }
   const Manifest old = manifest_of(before);
-  const Overview overview = make_overview(manifest_of(after), &old, {});
+  const Overview overview = make_overview(manifest_of(after), &old, {}, 1);
   std::vector<std::string> order;
   for (const OverviewAsset* asset : overview.changed()) order.push_back(asset->result.job.output.filename().string());
   EXPECT_EQ(order, (std::vector<std::string>{"1", "2", "3", "4"}));
@@ -211,11 +211,15 @@ TEST(Overview, StreamsAreAllOfTheFileAndOtherBytesAreNotThatAsset) {
   JobResult wrong = right;
   wrong.asset_hash[0] ^= 1U;
   std::size_t advised = 0;
-  const Overview overview =
-      make_overview(manifest_of({right, wrong}), nullptr, [&](const run::Asset&, std::vector<Diagnosis>& diagnoses) {
+  const Overview overview = make_overview(
+      manifest_of({right, wrong}), nullptr,
+      [&](const run::Asset&, OverviewAsset& row, std::vector<Diagnosis>& diagnoses) {
         ++advised;
+        row.pixel_triangles = 12;
+        row.thumbnail = {'<', '/', 's'};
         diagnoses.push_back({"most", "title", "remedy", "", 3, 0.5, {}});
-      });
+      },
+      1);
   std::filesystem::remove(path);
   const OverviewAsset& asset = overview.assets[0];
   EXPECT_EQ(asset.unread, "");
@@ -228,6 +232,10 @@ TEST(Overview, StreamsAreAllOfTheFileAndOtherBytesAreNotThatAsset) {
   EXPECT_EQ(advised, 1U);
   EXPECT_NE(overview.assets[1].unread.find("is not the asset that the manifest lists"), std::string::npos);
   EXPECT_TRUE(overview.assets[1].findings.empty());
+  EXPECT_EQ(overview.pixel_triangles(), 12U);
+  const std::string page = batch_page(overview, "t", "");
+  EXPECT_EQ(count_of(page, "\"at_pixel\": 12"), 1U);
+  EXPECT_EQ(count_of(page, "\"thumbnail\": \"PC9z\""), 1U) << "base64";
 }
 
 }  // namespace
