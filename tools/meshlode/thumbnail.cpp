@@ -68,8 +68,8 @@ Result<Thumbnail> draw_thumbnail(const run::Asset& asset) {
   TRY(textures.damage);
   TRY_LET(visibility, draw::draw_cut(asset, *cut, camera, masks));
   TRY_LET(image, draw::shade_view(asset, *cut, camera, *visibility, draw::View::kShaded, textures));
-  draw::DecodedImage small = app::shrink(cut_out(*image, *visibility), kThumbnailWidth, kThumbnailHeight,
-                                         app::TexelKind::kColor);
+  draw::DecodedImage small =
+      app::shrink(cut_out(*image, *visibility), kThumbnailWidth, kThumbnailHeight, app::TexelKind::kColor);
   Thumbnail thumbnail;
   TRY_LET(webp, app::encode_webp_file(small, kQuality));
   thumbnail.webp = std::move(*webp);

@@ -13,8 +13,8 @@
 
 namespace meshlode::cli {
 
-/// Triangles of the cut that `render` draws by its defaults: one pixel of error in a picture of 1280x720 that frames the
-/// scene. Nothing where the cut has more clusters than `render` draws.
+/// Triangles of the cut that `render` draws by its defaults: one pixel of error in a picture of 1280x720 that frames
+/// the scene. Nothing where the cut has more clusters than `render` draws.
 [[nodiscard]] std::optional<std::uint64_t> count_pixel_triangles(const run::Asset& asset);
 
 struct Thumbnail {

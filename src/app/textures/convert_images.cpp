@@ -110,9 +110,9 @@ struct EncodedImage {
   FileKind kind{};
 };
 
-/// The smallest of what the choice allows.
+/// The smallest of what the choice allows. `source_bytes`: of the image before.
 Result<EncodedImage> encode_smallest(draw::DecodedImage& image, const ImageTask& task,
-                                     const builder::TextureChoice& choice) {
+                                     const builder::TextureChoice& choice, std::size_t source_bytes) {
   EncodedImage best;
   const auto take = [&](std::vector<std::uint8_t> bytes, FileKind kind) {
     if (best.bytes.empty() || bytes.size() < best.bytes.size()) best = {std::move(bytes), kind};
@@ -136,6 +136,19 @@ Result<EncodedImage> encode_smallest(draw::DecodedImage& image, const ImageTask&
     TRY_LET(png, encode_png_file(image));
     take(std::move(*png), FileKind::kPng);
   }
+  // A source of low quality: about there fewer texels take fewer bytes, and what is lost was lost before.
+  for (int quality = kJpegQuality - 10; task.is_smaller && quality > 0 && best.bytes.size() >= source_bytes;
+       quality -= 10) {
+    if (task.kind == FileKind::kJpeg) {
+      TRY_LET(jpeg, encode_jpeg_file(image, quality));
+      take(std::move(*jpeg), FileKind::kJpeg);
+    } else if (task.kind == FileKind::kWebp && task.may_be_lossy() && choice.webp_quality == 0) {
+      TRY_LET(webp, encode_webp_file(image, static_cast<std::uint32_t>(quality)));
+      take(std::move(*webp), FileKind::kWebp);
+    } else {
+      break;
+    }
+  }
   return best;
 }
 
@@ -156,7 +169,7 @@ Result<builder::ConvertedImage> convert_one(const scene::SceneBlob& blob, const 
   }
   const std::string before = describe_image(task.kind, decoded->width, decoded->height, blob.bytes.size());
   if (task.is_smaller) *decoded = shrink(*decoded, task.width, task.height, task.texels);
-  TRY_LET(best, encode_smallest(*decoded, task, choice));
+  TRY_LET(best, encode_smallest(*decoded, task, choice, blob.bytes.size()));
   if (!task.is_smaller && best->bytes.size() >= blob.bytes.size()) {
     out.note = "stays as it is: " + before + ", and WebP would not be smaller";
     return out;

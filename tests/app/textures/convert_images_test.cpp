@@ -13,6 +13,8 @@
 #include <tbb/global_control.h>
 
 #include "../../draw/textures/image_samples.h"
+#include "app/textures/encode.h"
+#include "app/textures/shrink.h"
 #include "draw/textures/image.h"
 
 namespace meshlode::app {
@@ -196,6 +198,37 @@ TEST(ConvertImages, NothingBecomesLargerWithoutFewerTexels) {
   ASSERT_TRUE(images);
   EXPECT_TRUE((*images)[0].bytes.empty());
   EXPECT_NE((*images)[0].note.find("would not be smaller"), std::string::npos) << (*images)[0].note;
+}
+
+/// A JPEG of quality 15 would triple at the quality of 90 that others get.
+TEST(ConvertImages, FewerTexelsOfLowQualityTakeFewerBytes) {
+  draw::DecodedImage picture;
+  picture.width = picture.height = 128;
+  for (std::uint32_t i = 0; i < 128 * 128; ++i) {
+    const auto wave = static_cast<std::uint32_t>(128.0 + 60.0 * std::sin(i % 128 * 0.7) * std::cos(i / 128 * 0.9));
+    picture.texels.push_back(0xFF000000U | wave << 16U | (i % 128 + wave / 4) << 8U | i / 128);
+  }
+  const auto jpeg = encode_jpeg_file(picture, 15);
+  const auto webp = encode_webp_file(picture, 15);
+  ASSERT_TRUE(jpeg && webp);
+  struct Case {
+    const std::vector<std::uint8_t>& source;
+    const char *words, *type;
+  };
+  for (const auto& [source, words, type] : {Case{*jpeg, "resize:120", "image/jpeg"},
+                                            {*jpeg, "resize:120,webp:100", "image/jpeg"},
+                                            {*webp, "resize:120", "image/webp"}}) {
+    const auto images =
+        ImageConverter(kPlenty).convert(scene_of({source}, {scene::TextureRole::kBaseColor}), choice_of(words));
+    ASSERT_TRUE(images);
+    const builder::ConvertedImage& image = (*images)[0];
+    EXPECT_EQ(image.mime_type, type);
+    EXPECT_LT(image.bytes.size(), source.size()) << image.note;
+    const auto before = draw::decode_image(source), after = draw::decode_image(image.bytes);
+    ASSERT_TRUE(before && after);
+    EXPECT_EQ(after->width, 120U);
+    EXPECT_GT(psnr(shrink(*before, 120, 120, TexelKind::kOpaqueColor), *after), 25.0) << type;
+  }
 }
 
 TEST(ConvertImages, WhatTakesMoreMemoryThanAllowedStaysAndIsNamed) {
