@@ -53,6 +53,22 @@ done
 # Linux tells how much memory a job took; what it does not tell is null.
 grep -cE '"peak_memory_bytes": ([1-9][0-9]{6,}|null),$' told/m.json
 "$JSON_CHECK" "$SCHEMAS/manifest.schema.json" <told/m.json
+echo "another error tier measures the triangles that the cache has"
+for tier in qem measured certified qem; do
+  "$MESHLODE" build -q told/a.glb -o tier.lode --cache tiers --error-tier $tier --manifest tier.json; echo "exit $?"
+  "$MESHLODE" build -q told/a.glb -o clean.lode --no-cache --error-tier $tier; cmp tier.lode clean.lode
+  grep -A 3 '"cache": ' tier.json
+done
+# Built are assets whose pages depend on the tier, and scenes whose meshes may have tiers of their own.
+for words in '--preset fast' '--promise texels' rules; do
+  [ "$words" != rules ] || { printf '{"meshes": {"*": {"drop": "TEXCOORD_0"}}}' >told/meshlode.json; words=; }
+  for tier in qem measured; do
+    "$MESHLODE" build -q told/a.glb -o tier.lode --cache tiers $words --error-tier $tier --manifest tier.json
+    "$MESHLODE" build -q told/a.glb -o clean.lode --no-cache $words --error-tier $tier; cmp tier.lode clean.lode
+    grep -A 2 '"use": "miss"' tier.json
+  done
+done
+rm told/meshlode.json
 echo "the cache by itself"
 # What entries weigh is not asked here, but that they do.
 weightless() { sed -E 's/ [1-9][0-9,]*$/ B/'; }

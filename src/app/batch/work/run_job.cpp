@@ -14,11 +14,14 @@
 #include "app/batch/cache/mesh_entries.h"
 #include "app/batch/work/decided.h"
 #include "app/batch/work/warnings.h"
+#include "app/measure/measure_asset.h"
 #include "base/guarded.h"
 #include "base/memory.h"
 #include "base/try.h"
 #include "builder/builder.h"
 #include "builder/stage_options.h"
+#include "format/names.h"
+#include "run/read/asset.h"
 #include "scene/detect/detect.h"
 
 namespace meshlode::app {
@@ -85,10 +88,8 @@ class Run {
       auto found = find_dependencies(result_.job.input, import_.allow_outside);
       if (found) {
         result_.files = std::move(*found);
-        const std::string settings = settings_text(pipeline_, import_) + mesh_rules_text(layers_);
-        if (options_.cache != nullptr) {
-          ingredients_ = ingredients_text(options_.cache->program(), settings, result_.files);
-        }
+        scene_files_ = result_.files.size();
+        if (options_.cache != nullptr) ingredients_ = ingredients_with(pipeline_);
         add_settings_files();
       } else {
         unreadable = found.error();  // the import will say the same, and more
@@ -124,6 +125,11 @@ class Run {
     import_.repair = pipeline_.repair;
     import_.linear_colors = pipeline_.linear_colors;
     return Ok{};
+  }
+
+  [[nodiscard]] std::string ingredients_with(const builder::PipelineOptions& pipeline) const {
+    return ingredients_text(options_.cache->program(), settings_text(pipeline, import_) + mesh_rules_text(layers_),
+                            std::span(result_.files).first(scene_files_));
   }
 
   /// For who lists the files. What they say is in the settings, where they lie is nobody's business: not in the key.
@@ -249,6 +255,43 @@ class Run {
     watcher_.on_write(result);
   }
 
+  /// What a build would give, of an asset in the cache that differs in its error tier alone: no triangle depends on the
+  /// tier, and errors take half as long to measure as a mesh to build, or less. Nothing: there is none, or its errors
+  /// cannot be measured (measure_asset()).
+  std::optional<std::vector<std::uint8_t>> measure_cached(const scene::Scene& scene) {
+    if (ingredients_.empty() || !mesh_rules_text(layers_).empty()) return std::nullopt;  // rules may name tiers
+    for (const auto& [tier, name] : format::kErrorTierNames) {
+      builder::PipelineOptions other = pipeline_;
+      other.error_tier = tier;
+      if (tier == pipeline_.error_tier) continue;
+      const auto record = options_.cache->find_record(ingredients_with(other));
+      if (!record) continue;
+      const auto entry = options_.cache->store().find(EntryKind::kAsset, record->asset);
+      if (!entry) continue;
+      const auto asset = run::Asset::from_bytes(entry->bytes);
+      if (!asset) continue;
+      const Timer timer;
+      auto bytes = measure_asset(*asset, scene, pipeline_.error_tier);
+      if (!bytes) continue;
+      result_.reason += std::string("; triangles of the cached asset of --error-tier ") + name;
+      result_.stages.push_back({"measure_cached", timer.seconds()});
+      result_.facts = record->facts;
+      result_.meshes_from_cache = record->facts.meshes;
+      return std::move(*bytes);
+    }
+    return std::nullopt;
+  }
+
+  Result<std::vector<std::uint8_t>> build(scene::Scene&& scene) {
+    builder::PipelineReport report;
+    std::optional<MeshEntries> meshes;
+    if (options_.cache != nullptr) pipeline_.mesh_store = &meshes.emplace(*options_.cache);
+    auto bytes = builder::build_lode(std::move(scene), pipeline_, watcher_.on_progress, report);
+    pipeline_.mesh_store = nullptr;
+    take_report(report);
+    return bytes;
+  }
+
   Status build_and_write() {
     const Timer import_timer;
     std::vector<FileId> read;
@@ -263,12 +306,8 @@ class Run {
     if (Status set = app::set_mesh_options(layers_, names_of_meshes(*scene), pipeline_); !set) return set;
     if (Status names = check_names(builder::unknown_names(*scene, pipeline_)); !names) return names;
     if (watcher_.on_scene) watcher_.on_scene(*scene, layers_, pipeline_);
-    builder::PipelineReport report;
-    std::optional<MeshEntries> meshes;
-    if (options_.cache != nullptr) pipeline_.mesh_store = &meshes.emplace(*options_.cache);
-    const auto bytes = builder::build_lode(std::move(*scene), pipeline_, watcher_.on_progress, report);
-    pipeline_.mesh_store = nullptr;
-    take_report(report);
+    auto measured = measure_cached(*scene);
+    const auto bytes = measured ? Result<std::vector<std::uint8_t>>(std::move(*measured)) : build(std::move(*scene));
     if (!bytes) return in_input(bytes.error());
     if (const Result<app::Settled> settled = app::settle(layers_); settled && !result_.decided.empty()) {
       if (const std::string use = app::describe_use(*settled); !use.empty())
@@ -321,7 +360,8 @@ class Run {
   std::vector<app::SettingLayer> layers_;  ///< empty where nobody asked for files
   OutputFiles& files_;
   const BatchWatcher& watcher_;
-  std::string ingredients_;  ///< empty: not known, so neither looked up nor kept
+  std::size_t scene_files_ = 0;  ///< of result_.files, which come before settings files
+  std::string ingredients_;      ///< empty: not known, so neither looked up nor kept
   JobResult result_;
 };
 
