@@ -21,12 +21,16 @@ bool has_color(Stream stream) {
   if (no_color != nullptr && *no_color != '\0') return false;
   const char* const terminal = std::getenv("TERM");
   if (terminal == nullptr || std::string_view(terminal) == "dumb") return false;
-  return ::isatty(stream == Stream::kOut ? STDOUT_FILENO : STDERR_FILENO) == 1;
+  return is_terminal(stream);
 }
 
 constexpr const char* kCodes[] = {"\033[31m", "\033[32m", "\033[33m", "\033[1m", "\033[2m"};  ///< by Color
 
 }  // namespace
+
+bool is_terminal(Stream stream) {
+  return ::isatty(stream == Stream::kOut ? STDOUT_FILENO : STDERR_FILENO) == 1;
+}
 
 void use_color(std::string_view choice) {
   color_choice = choice == "always"  ? ColorChoice::kAlways
@@ -59,7 +63,7 @@ std::string with_colored_words(const std::string& text, std::span<const ColoredW
 }
 
 bool is_unicode_terminal() {
-  if (::isatty(STDOUT_FILENO) != 1) return false;
+  if (!is_terminal(Stream::kOut)) return false;
   // Asked of the environment: setlocale() would change how numbers are printed.
   for (const char* name : {"LC_ALL", "LC_CTYPE", "LANG"}) {
     const char* value = std::getenv(name);

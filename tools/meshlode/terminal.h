@@ -15,6 +15,8 @@ namespace meshlode::cli {
 enum class Color : std::uint8_t { kRed, kGreen, kYellow, kBold, kDim };
 enum class Stream : std::uint8_t { kOut, kErr };
 
+[[nodiscard]] bool is_terminal(Stream stream);
+
 /// `--color`: auto (where there is a terminal, unless NO_COLOR is set or TERM is dumb), always or never. From then on.
 void use_color(std::string_view choice);
 /// The text in this colour where the stream shows colours, else as it is.

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // man: the manual pages, as this very program would have them.
+#include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -11,6 +13,7 @@
 #include "man_page.h"
 #include "options.h"
 #include "outputs.h"
+#include "terminal.h"
 #include "verb.h"
 
 namespace meshlode::cli {
@@ -38,19 +41,39 @@ std::vector<Page> all_pages(const std::vector<VerbHelp>& verbs, bool is_markdown
   return pages;
 }
 
+/// By `man`, with its pager. False where the machine has none.
+bool show_by_man(const std::string& page) {
+  if (std::system("command -v man >/dev/null 2>&1") != 0) return false;
+  std::FILE* const man = ::popen("man -l -", "w");
+  if (man == nullptr) return false;
+  std::fputs(page.c_str(), man);
+  ::pclose(man);  // it says itself what went wrong
+  return true;
+}
+
 int run_man(const Verb& verb, std::span<char* const> args) {
-  std::optional<std::string> page;
-  std::string folder, format = "roff";
+  std::optional<std::string> page, format;
+  std::string folder;
   std::vector<std::string> names{kProgram};
   for (const Verb* other : all_verbs()) names.emplace_back(other->name);
   OptionParser parser(verb);
   parser.add_positional("PAGE", page, "a command (default: the program's own page)", names);
   parser.group("Output");
   parser.add_value("-O,--output-folder FOLDER", folder, "write all pages to this folder (default: one page to stdout)");
-  parser.add_value("--format", format, "format of the pages", {"roff", "markdown"});
+  parser.add_value(
+      "--format", format,
+      "format of the pages (default: roff; on a terminal a page is shown by man, or as markdown where there "
+      "is no man)",
+      {"roff", "markdown"});
   if (const auto exit_code = parser.parse(args)) return *exit_code;
   if (page && !folder.empty()) return print_error({ErrorCode::kUsage, "", "give a page or -O, not both"});
-  for (const Page& one : all_pages(all_verb_help(), format == "markdown")) {
+  const bool is_shown = folder.empty() && !format && is_terminal(Stream::kOut);
+  if (is_shown) {
+    for (const Page& one : all_pages(all_verb_help(), false)) {
+      if (one.verb == page.value_or(kProgram) && show_by_man(one.text)) return 0;
+    }
+  }
+  for (const Page& one : all_pages(all_verb_help(), is_shown || format == "markdown")) {
     if (!folder.empty()) {
       const std::string path = (std::filesystem::path(folder) / one.file).string();
       if (const Status written = write_text(path, one.text); !written) return print_error(written.error());

@@ -278,6 +278,11 @@ FileOutcome render_file(const BulkInput& input, const RenderOptions& options) {
   } else if (!options.report.quiet) {
     std::string& said = input.output == kStream ? out.notes : out.text;
     said += stats_text(input.output, *camera, stats);
+    if (options.view == "levels") {
+      said +=
+          "colours: blue is level 0, the finest, red the coarsest; their numbers are in the lower left corner, where "
+          "there is room\n";
+    }
   }
   return out;
 }

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "app/doctor/diagnosis.h"
 #include "base/file.h"
 #include "base/json_writer.h"
 #include "bulk.h"
@@ -35,7 +36,7 @@ std::string describe(const std::string& path, const judge::ValidationReport& rep
             finding.detail + "\n";
   }
   if (report.finding_count > report.findings.size()) {
-    text += path + ": and " + std::to_string(report.finding_count - report.findings.size()) + " more findings\n";
+    text += path + ": and " + app::counted(report.finding_count - report.findings.size(), "more findings") + "\n";
   }
   if (report.finding_count == 0 && !quiet) {
     text += path + ": " + colored(Stream::kOut, Color::kGreen, "valid") + ", " + std::to_string(report.checked.size()) +

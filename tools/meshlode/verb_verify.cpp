@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "app/doctor/diagnosis.h"
 #include "app/report/read_meta.h"
 #include "base/file.h"
 #include "base/json_writer.h"
@@ -49,7 +50,7 @@ std::string describe(const judge::VerifyReport& report, bool quiet) {
                                         : "FAILED",
                   static_cast<unsigned long long>(check.items));
     text += head + check.what;
-    if (check.failures > 0) text += ": " + std::to_string(check.failures) + " failures";
+    if (check.failures > 0) text += ": " + app::counted(check.failures, "failures");
     text += "\n";
   }
   for (const judge::Finding& finding : report.findings) {
@@ -57,11 +58,11 @@ std::string describe(const judge::VerifyReport& report, bool quiet) {
             ": " + finding.detail + "\n";
   }
   if (report.finding_count > report.findings.size()) {
-    text += "and " + std::to_string(report.finding_count - report.findings.size()) + " more findings\n";
+    text += "and " + app::counted(report.finding_count - report.findings.size(), "more findings") + "\n";
   }
   if (!quiet)
     text += report.finding_count == 0 ? "verified: nothing found\n"
-                                      : "NOT verified: " + std::to_string(report.finding_count) + " findings\n";
+                                      : "NOT verified: " + app::counted(report.finding_count, "findings") + "\n";
   return text;
 }
 

@@ -86,9 +86,7 @@ void add_byte_map(std::string& out, const ByteMap& map) {
   const auto row = [&](std::string name, const PageBits& bits, double divisor, int digits) {
     std::vector<std::string> cells{std::move(name)};
     for (const ByteColumn& column : byte_columns(bits)) {
-      std::string cell;
-      append_format(cell, "%.*f", digits, static_cast<double>(column.bits) / 8.0 / divisor);
-      cells.push_back(cell);
+      cells.push_back(rounded_text(static_cast<double>(column.bits) / 8.0 / divisor, digits));
     }
     table.row(cells);
   };

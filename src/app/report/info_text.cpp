@@ -69,7 +69,8 @@ void add_byte_map(std::string& out, const ByteMap& map, const AssetInfo& info) {
     const auto columns = byte_columns(bits);
     for (std::size_t i = 0; i < columns.size(); ++i) {
       if (totals[i].bits == 0) continue;
-      append_format(out, " %*.*f", width(columns[i]), digits, static_cast<double>(columns[i].bits) / 8.0 / divisor);
+      append_format(out, " %*s", width(columns[i]),
+                    rounded_text(static_cast<double>(columns[i].bits) / 8.0 / divisor, digits).c_str());
     }
     out += '\n';
   };
@@ -112,19 +113,24 @@ void add_materials(std::string& out, const run::Asset& asset) {
   add_more(out, asset.materials().size(), "materials");
 }
 
+std::string size_text(std::uint32_t width, std::uint32_t height) {
+  return width == 0 ? "size not known" : std::to_string(width) + "x" + std::to_string(height);
+}
+
 void add_image_list(std::string& out, const run::Asset& asset, const AssetInfo& info) {
   if (info.images.empty()) return;
   append_format(out, "\nimages\n");
   for (std::size_t i = 0; i < info.images.size() && i < kMaxRows; ++i) {
     const ImageInfo& image = info.images[i];
     const format::BlobRecord& blob = asset.blobs()[image.blob];
-    append_format(out, "  %3u  %s: %s, %ux%u, %s bytes", blob.source_index,
-                  printable(asset.string(blob.name), 80).c_str(), printable(asset.string(blob.mime_type), 40).c_str(),
-                  image.width, image.height, grouped_digits(blob.bytes).c_str());
+    append_format(out, "  %3u  %s: %s, %s, %s bytes", blob.source_index, printable(asset.string(blob.name), 80).c_str(),
+                  printable(asset.string(blob.mime_type), 40).c_str(), size_text(image.width, image.height).c_str(),
+                  grouped_digits(blob.bytes).c_str());
     if (image.gpu_bytes) append_format(out, ", %s on a GPU", grouped_digits(*image.gpu_bytes).c_str());
     if (image.source) {
-      append_format(out, "; was %s, %ux%u, %s bytes", printable(image.source->mime_type, 40).c_str(),
-                    image.source->width, image.source->height, grouped_digits(image.source->bytes).c_str());
+      append_format(out, "; was %s, %s, %s bytes", printable(image.source->mime_type, 40).c_str(),
+                    size_text(image.source->width, image.source->height).c_str(),
+                    grouped_digits(image.source->bytes).c_str());
     }
     out += "\n";
   }

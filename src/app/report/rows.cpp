@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/report/rows.h"
 
+#include <cmath>
 #include <map>
 #include <span>
 
@@ -175,6 +176,12 @@ std::array<ByteColumn, 9> byte_columns(const PageBits& bits) {
            {"heads", bits.heads},
            {"materials", bits.materials},
            {"padding", bits.padding}}};
+}
+
+std::string rounded_text(double value, int digits) {
+  std::string text;
+  append_format(text, "%.*f", digits, digits == 0 ? std::floor(value + 0.5) : value);
+  return text;
 }
 
 }  // namespace meshlode::app

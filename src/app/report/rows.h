@@ -43,5 +43,7 @@ struct ByteColumn {
   std::uint64_t bits;
 };
 [[nodiscard]] std::array<ByteColumn, 9> byte_columns(const PageBits& bits);
+/// As the page of --html rounds: halves upwards, for bits make half bytes. printf rounds them to even numbers.
+[[nodiscard]] std::string rounded_text(double value, int digits);
 
 }  // namespace meshlode::app

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/report/info.h"
+#include "app/report/rows.h"
 #include "support/sample_asset.h"
 
 namespace meshlode::app {
@@ -71,6 +72,14 @@ TEST_P(ByteMapJson, PartsLeaveNothingOfTheFileOver) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Codecs, ByteMapJson, ::testing::Values(format::Codec::kNone, format::Codec::kStrips));
+
+TEST(RoundedText, HalvesGoUpAsOnThePage) {
+  EXPECT_EQ(rounded_text(0.5, 0), "1");
+  EXPECT_EQ(rounded_text(1.5, 0), "2");
+  EXPECT_EQ(rounded_text(2.5, 0), "3");
+  EXPECT_EQ(rounded_text(2.4375, 0), "2");
+  EXPECT_EQ(rounded_text(33.34, 1), "33.3");
+}
 
 }  // namespace
 }  // namespace meshlode::app

@@ -27,6 +27,13 @@ for page in pages/*.1; do
   done
 done
 grep -lx ".SH FILES" pages/*.1
+# A terminal gets no roff.
+if command -v script >/dev/null; then
+  for path in "$PATH" /nowhere; do
+    MANPAGER=cat TERM=dumb script -qec "PATH=$path '$MESHLODE' man cache" /dev/null </dev/null >shown
+    grep -c '^\.SH' shown; grep -qE 'use or check the cache|--verify' shown && echo shown
+  done
+fi
 mkdir reference
 code man --format markdown -O reference
 "$MESHLODE" man --format markdown build | cmp - reference/build.md

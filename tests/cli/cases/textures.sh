@@ -11,7 +11,7 @@ def png(texel, side=64):
     return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", side, side, 8, 2, 0, 0, 0)) + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b"")
 r = random.Random(1)
 images = [png(lambda x, y: (4 * x, r.randrange(40), 3 * y)), png(lambda x, y: (118 + r.randrange(20), 118 + r.randrange(20), 255)),
-          png(lambda x, y: (0, 100 + r.randrange(60), 0)), b"\xabKTX 20\xbb\r\n\x1a\n" + b"\0" * 68]
+          png(lambda x, y: (0, 100 + r.randrange(60), 0)), b"\xabKTX 20\xbb\r\n\x1a\n" + struct.pack("<4I", 0, 1, 48, 20) + b"\0" * 52]
 parts = [struct.pack("<12f", 0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0), struct.pack("<8f", 0, 0, 1, 0, 1, 1, 0, 1), struct.pack("<6H", 0, 1, 2, 0, 2, 3)] + images
 views, data = [], b""
 for part in parts:
