@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # compare_compilers.sh BUILD_A BUILD_B: builds the scenes of data/ (and a few models, where MESHLODE_MODELS names some)
 # with both programs. Their content hashes, and the files' bytes, must be equal (I10), and so must the pictures of one
-# program be as golden pictures to the other.
+# program be as golden pictures to the other, and the page of a batch with its thumbnails.
 set -euo pipefail
 a=$1/meshlode b=$2/meshlode
 work=$(mktemp -d); trap 'rm -rf "$work"' EXIT
@@ -30,5 +30,8 @@ for scene in "${scenes[@]}"; do
   compared=$((compared + 1))
   echo "$name  $hash_a  $hash_b  $verdict"
 done
+"$a" build --quiet "${scenes[@]}" -O "$work/out" --manifest "$work/manifest.json"
+for program in a b; do "${!program}" report "$work/manifest.json" -o "$work/$program.html"; done
+cmp "$work/a.html" "$work/b.html" || different=$((different + 1))
 echo "$compared scenes compared, $different differ"
 [ "$compared" -gt 0 ] && [ "$different" -eq 0 ]

@@ -182,7 +182,7 @@ TEST(Overview, ComparesWithTheOlderBatchByOutput) {
   EXPECT_EQ(now.bytes(), 202U);
   EXPECT_EQ(now.old_bytes(), 370U);
   ASSERT_EQ(now.changed().size(), 1U);
-  EXPECT_NE(overview_markdown(now).find("202, -168 (-45.4%); 1 asset changed, 2 new, 1 gone"), std::string::npos)
+  EXPECT_NE(overview_markdown(now).find("202 bytes, -168 (-45.4%): 1 asset changed, 2 new, 1 gone"), std::string::npos)
       << overview_markdown(now);
 }
 
