@@ -19,7 +19,7 @@ namespace {
 
 /// Samples of a pixel along each side: the rasterizer has one, and edges of a small picture need more.
 constexpr std::uint32_t kSamples = 2;
-/// At 90 a thumbnail takes 1.6 times the bytes and looks the same.
+/// Of FlightHelmet, dragon, spot and the scenes of data/ 90 takes 1.5 times the bytes and looks the same.
 constexpr std::uint32_t kQuality = 70;
 
 std::optional<std::vector<run::ClusterInstance>> select_pixel_cut(const run::Asset& asset, const run::Camera& camera) {

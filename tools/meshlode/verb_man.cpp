@@ -62,8 +62,7 @@ int run_man(const Verb& verb, std::span<char* const> args) {
   parser.add_value("-O,--output-folder FOLDER", folder, "write all pages to this folder (default: one page to stdout)");
   parser.add_value(
       "--format", format,
-      "format of the pages (default: roff; on a terminal a page is shown by man, or as markdown where there "
-      "is no man)",
+      "format of the pages (default: roff; on a terminal man shows the page, or without man it is markdown)",
       {"roff", "markdown"});
   if (const auto exit_code = parser.parse(args)) return *exit_code;
   if (page && !folder.empty()) return print_error({ErrorCode::kUsage, "", "give a page or -O, not both"});
