@@ -259,7 +259,8 @@ class Run {
   /// tier, and errors take half as long to measure as a mesh to build, or less. Nothing: there is none, or its errors
   /// cannot be measured (measure_asset()).
   std::optional<std::vector<std::uint8_t>> measure_cached(const scene::Scene& scene) {
-    if (ingredients_.empty() || !mesh_rules_text(layers_).empty()) return std::nullopt;  // rules may name tiers
+    if (ingredients_.empty() || pipeline_.hooks != nullptr) return std::nullopt;
+    if (!mesh_rules_text(layers_).empty()) return std::nullopt;  // they may name tiers
     for (const auto& [tier, name] : format::kErrorTierNames) {
       builder::PipelineOptions other = pipeline_;
       other.error_tier = tier;
