@@ -143,9 +143,10 @@ int run_report(const Verb& verb, std::span<char* const> args) {
 const Verb kReportVerb{
     "report", "show a batch on one page: status, bytes, what grew, faults, times",
     "Reads the manifest of a batch and its assets, and writes one self-contained page: counts, a table to sort and "
-    "search, pictures, what the bytes are spent on, the largest changes against an earlier batch, faults by severity, "
-    "use of the "
-    "cache, times.\n\n"
+    "search, with a thumbnail of each asset, what the bytes are spent on, the largest changes against an earlier "
+    "batch, "
+    "faults by severity, use of the cache, times. Triangles at one pixel are those that 'meshlode render' draws by its "
+    "defaults: at one pixel of error, each asset framed in 1280x720.\n\n"
     "The same as a summary for a merge request, as SARIF 2.1.0 and as workflow commands. Paths are those of the "
     "manifest: run it in the folder in which the batch ran. The exit status is 0 whatever the batch's was.",
     "meshlode report out/manifest.json -o report.html\n"
