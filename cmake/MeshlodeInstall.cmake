@@ -55,6 +55,7 @@ if(NOT MESHLODE_SANITIZE)
 endif()
 
 install(FILES include/meshlode/format.h include/meshlode/page.h include/meshlode/page_cache.h include/meshlode/decode.glsl
+              include/meshlode/decode.wgsl
               include/meshlode/result.h include/meshlode/runtime.h include/meshlode/meshlode.h include/meshlode/version.h
               src/run/select/metric.h
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/meshlode COMPONENT dev)

@@ -35,7 +35,11 @@ add_custom_command(OUTPUT "${meshlode_wasm}"
   COMMAND ${CMAKE_COMMAND} --build "${wasm_build}" --target meshlode_wasm
   COMMAND ${CMAKE_COMMAND} -E make_directory "${meshlode_npm}"
   COMMAND ${CMAKE_COMMAND} -E copy ${npm_files} "${meshlode_npm}"
+  COMMAND ${CMAKE_COMMAND} -E rm -rf "${meshlode_npm}/three" "${meshlode_npm}/stream" "${meshlode_npm}/webgpu"
   COMMAND ${CMAKE_COMMAND} -E copy_directory ${PROJECT_SOURCE_DIR}/tools/wasm/three "${meshlode_npm}/three"
+  COMMAND ${CMAKE_COMMAND} -E copy_directory ${PROJECT_SOURCE_DIR}/tools/wasm/stream "${meshlode_npm}/stream"
+  COMMAND ${CMAKE_COMMAND} -E copy_directory ${PROJECT_SOURCE_DIR}/tools/wasm/webgpu "${meshlode_npm}/webgpu"
+  COMMAND ${CMAKE_COMMAND} -E copy ${PROJECT_SOURCE_DIR}/include/meshlode/decode.wgsl "${meshlode_npm}/webgpu/decode.wgsl"
   COMMAND ${CMAKE_COMMAND} -E copy ${PROJECT_SOURCE_DIR}/LICENSES/MIT.txt "${meshlode_npm}/LICENSE"
   COMMAND ${CMAKE_COMMAND} -E copy "${wasm_build}/tools/wasm/meshlode.wasm" "${meshlode_wasm}"
   DEPENDS ${wasm_sources} ${PROJECT_SOURCE_DIR}/cmake/wasm32-wasi.cmake

@@ -37,6 +37,8 @@ export interface Mesh {
   normalScale: number;
   uvSetCount: number;
   hasColor: boolean;
+  /** Per stored set: a unit of its integers is 2 to this power. */
+  uvLog2: number[];
   uvSetSource: number[];
   /** Of every triangle; NONE: decoding says which. */
   material: number;
@@ -220,6 +222,8 @@ export interface Asset {
   /** loadPage from bytes of the caller, those of the page's `offset` and `storedBytes`. Errors: also usage, for another number. */
   unpackPage(page: number, stored: Uint8Array): void;
   dropPage(page: number): void;
+  /** A copy of a loaded page, decoded, for decode.wgsl; undefined where it is not loaded. */
+  pageBytes(page: number): Uint8Array | undefined;
   /** Loads the cluster's page where it is not loaded; of a head it must be. */
   decodeFloats(cluster: number): DecodedFloats;
   decodeIntegers(cluster: number): DecodedIntegers;

@@ -226,6 +226,16 @@ class Asset {
   get blobs() {
     return (this.#tables.blobs ??= this.#records('blobs', 48, (v, p) => this.#blob(v, p)));
   }
+  /** A copy of a table of the file as it lies there, in words: 14 a group, 6 a cluster. Errors are of the promise that was chosen. */
+  tableWords(name) {
+    return this.#uints(this.#table(name), ({ groups: 14, clusters: 6 })[name] * this.#count(name));
+  }
+  /** The farthest that anything of a mesh is from its origin, as selections take it. */
+  reachOf(mesh) {
+    const firstNode = this.#record('meshes', 200, mesh, (view, at) => view.getUint32(at + 192, true));
+    const [x, y, z, radius] = this.#record('nodes', 28, firstNode, (view, at) => [0, 4, 8, 12].map((k) => view.getFloat32(at + k, true))) ?? [0, 0, 0, 0];
+    return Math.sqrt(x * x + y * y + z * z) + radius;
+  }
   /** The mesh that a cluster is of; NONE if there is no such cluster. */
   meshOf(cluster) {
     const one = this.#record('clusters', 24, cluster, readCluster);
@@ -390,6 +400,11 @@ class Asset {
       this.#runtime.release(at);
       throw error;
     }
+  }
+  /** A copy of a loaded page as it lies in the module, for decode.wgsl; undefined where it is not loaded. */
+  pageBytes(page) {
+    const at = this.#pages.get(page);
+    return at === undefined ? undefined : this.#runtime.bytes(at, this.pages[page].bytes).slice();
   }
   dropPage(page) {
     const at = this.#pages.get(page);
@@ -609,6 +624,7 @@ class Asset {
       normalScale: u(84),
       uvSetCount: u(88),
       hasColor: u(92) !== 0,
+      uvLog2: [0, 1, 2, 3].map((set) => i(96 + 4 * set)).slice(0, u(88)),
       uvSetSource: [0, 1, 2, 3].map((set) => view.getUint8(at + 112 + set)).slice(0, u(88)),
       material: u(116),
       sphereLog2: i(120),

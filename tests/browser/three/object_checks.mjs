@@ -210,7 +210,7 @@ export async function checkObject({ folder, expect }) {
   await checkOptions(three, expect);
   await checkEnds(three, THREE, expect);
   await checkStretch(three, THREE, expect);
-  await checkServers(await import(at('meshlode/three/source.js')), expect);
+  await checkServers(await import(at('meshlode/stream/source.js')), expect);
 }
 
 if (process.argv[1] === new URL(import.meta.url).pathname) {

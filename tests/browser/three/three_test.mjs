@@ -181,7 +181,7 @@ async function lookAtForms(browser, server) {
   expect((await other.value('test.lode.drawn.clusters.length')) > 100, 'not culled: what is behind the camera is drawn');
   // A camera that comes before the asset is open.
   const early = `new Promise((done) => {
-    const worker = new Worker('/node_modules/meshlode/three/worker.js', { type: 'module' });
+    const worker = new Worker('/node_modules/meshlode/stream/worker.js', { type: 'module' });
     worker.onmessage = ({ data }) => data.type === 'selection' && done(true);
     worker.postMessage({ type: 'open', file: location.origin + '/assets/city.lode', options: { timeoutMs: 9000, poolBytes: 1e9 } });
     const view = { eye: [0, 0, 9], isOrthographic: false, fovyRadians: 1, nearDistance: 0.01, heightPx: 500 };

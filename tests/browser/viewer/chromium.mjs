@@ -8,12 +8,13 @@ import { join } from 'node:path';
 export const browserPath = ['/usr/bin/chromium', '/usr/bin/chromium-browser', '/usr/bin/google-chrome'].find(existsSync);
 
 export class Browser {
-  static async start() {
+  /** `more`: options of Chromium. */
+  static async start(more = []) {
     const browser = new Browser();
     browser.folder = mkdtempSync(join(tmpdir(), 'meshlode-browser-'));
     const options = ['--headless=new', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--no-sandbox', '--disable-gpu-sandbox',
       '--no-first-run', '--hide-scrollbars', '--disable-background-networking', '--disable-dev-shm-usage', '--remote-debugging-pipe',
-      `--user-data-dir=${browser.folder}`, 'about:blank'];
+      `--user-data-dir=${browser.folder}`, ...more, 'about:blank'];
     browser.process = spawn(browserPath, options, { stdio: ['ignore', 'ignore', 'ignore', 'pipe', 'pipe'] });
     browser.waiting = new Map();
     browser.listeners = [];

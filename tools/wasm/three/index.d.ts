@@ -26,7 +26,7 @@ export interface LodeOptions {
   credentials?: RequestCredentials;
   /** Within which 64 KiB of a request have to come; 30,000. Infinity: no limit. */
   timeoutMs?: number;
-  /** Where a bundler or an origin wants another worker than three/worker.js of this package. */
+  /** Where a bundler or an origin wants another worker than stream/worker.js of this package. */
   createWorker?: () => Worker;
   /** The compiled meshlode.wasm, where it does not lie beside index.js. */
   module?: WebAssembly.Module;

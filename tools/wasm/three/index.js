@@ -3,7 +3,7 @@
 import * as THREE from 'three';
 import { Batch } from './batch.js';
 import { Materials } from './materials.js';
-import { LodeError } from './source.js';
+import { LodeError } from '../stream/source.js';
 export { LodeError };
 
 const DEFAULTS = {
@@ -68,7 +68,7 @@ export class Lode extends THREE.Object3D {
       this.#reject = reject;
       const { headers, credentials, timeoutMs, poolBytes, promise, module } = options;
       const source = file instanceof Blob ? file : new URL(file, globalThis.document?.baseURI).href;
-      const worker = (this.#worker = options.createWorker?.() ?? new Worker(new URL('./worker.js', import.meta.url), { type: 'module' }));
+      const worker = (this.#worker = options.createWorker?.() ?? new Worker(new URL('../stream/worker.js', import.meta.url), { type: 'module' }));
       worker.onmessage = ({ data }) => {
         if (this.#tables || !this.#worker) return this.#take(data);
         if (data.type === 'error') return reject(new LodeError(data.place, data.reason));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The worker: reads the head, selects what to draw of the resident pages, reads and unpacks pages, and drops them. A page is resident
+// The worker of meshlode/three and meshlode/webgpu: reads the head, selects what to draw of the resident pages, reads and unpacks pages, and drops them. A page is resident
 // once its message is sent: messages arrive in order, so a selection never comes before its pages or after they are dropped.
 import { INFINITE_ERROR, NONE, loadRuntime } from '../index.js';
 import { LodeError, RangeSource } from './source.js';
@@ -15,8 +15,9 @@ class Streamer {
   #runtime;
   #asset = null;
   #selector;
+  #isRaw; // pages are sent as they are decoded on a GPU, and not as floats
   #poolBytes;
-  #slotBytes;
+  #slotBytes; // of a cluster; of a page, where those are raw
   #query = null;
   #resident;
   #cost; // per page, resident or being read
@@ -33,6 +34,7 @@ class Streamer {
   async open({ file, options }) {
     this.#source = new RangeSource(file, options);
     this.#poolBytes = options.poolBytes;
+    this.#isRaw = options.isRaw === true;
     const runtime = (this.#runtime = await loadRuntime(options.module));
     const first = await this.#source.read(0, FIRST_BYTES, true);
     // Where another origin hides the size of its file, the header has it.
@@ -51,9 +53,16 @@ class Streamer {
     const slot = asset.largestCluster();
     const floats = asset.meshes.map((mesh) => 3 + 3 * (mesh.normalMode === 1) + 2 * mesh.uvSetCount + 4 * mesh.hasColor);
     this.#slotBytes = 4 * slot.vertices * floats.reduce((a, b) => Math.max(a, b), 0) + 12 * slot.triangles;
-    const { meshes, materials, instances } = asset;
+    const { meshes, materials, instances, pages } = asset;
+    if (this.#isRaw) {
+      this.#slotBytes = pages.reduce((most, { bytes }) => Math.max(most, bytes), 0);
+      const tables = { groups: asset.tableWords('groups'), clusters: asset.tableWords('clusters') };
+      const reaches = meshes.map((_, mesh) => asset.reachOf(mesh));
+      postMessage({ type: 'opened', meshes, materials, instances, pages, ...tables, reaches, slot, slotBytes: this.#slotBytes });
+      return this.#schedule();
+    }
     const scene = inPlace('scene', () => asset.scene);
-    postMessage({ type: 'opened', meshes, materials, instances, scene, slot, pageCount: asset.pages.length });
+    postMessage({ type: 'opened', meshes, materials, instances, scene, slot, pageCount: pages.length });
     this.#schedule(); // a camera that came before
   }
 
@@ -123,7 +132,7 @@ class Streamer {
     const take = (page) => {
       const priority = wanted.get(page);
       if (priority === undefined || this.#flying.has(page) || (isFirst && priority !== INFINITE_ERROR)) return false;
-      const cost = this.#asset.pages[page].clusterCount * this.#slotBytes;
+      const cost = (this.#isRaw ? 1 : this.#asset.pages[page].clusterCount) * this.#slotBytes;
       const isSpare = (one) => (this.#resident[one >> 5] >>> (one & 31)) & 1 && all[one] !== INFINITE_ERROR;
       spare ??= [...this.#asset.pages.keys()].filter(isSpare).sort((a, b) => all[b] - all[a]);
       while (priority !== INFINITE_ERROR && this.#used + cost > this.#poolBytes) {
@@ -191,6 +200,14 @@ class Streamer {
       if (error instanceof WebAssembly.RuntimeError) throw error;
       return error;
     }
+    this.#resident[page >> 5] |= 1 << (page & 31);
+    if (this.#isRaw) {
+      const bytes = asset.pageBytes(page);
+      asset.dropPage(page);
+      this.#unpackMs += performance.now() - start;
+      postMessage({ type: 'page', page, bytes }, [bytes.buffer]);
+      return null;
+    }
     const buffers = new Set();
     const clusters = [];
     const { firstCluster, clusterCount } = asset.pages[page];
@@ -201,7 +218,6 @@ class Streamer {
       for (const array of [positions, normals, ...uvs, colors, ...pieces.map((one) => one.triangles)]) if (array) buffers.add(array.buffer);
     }
     asset.dropPage(page);
-    this.#resident[page >> 5] |= 1 << (page & 31);
     this.#unpackMs += performance.now() - start;
     postMessage({ type: 'page', page, clusters }, [...buffers]);
     return null;

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: MIT
+/// <reference types="@webgpu/types" />
+import type { Cut, PromiseKind, View } from '../index.js';
+
+/** A refusal with its place: a range of the file, 'head', 'page 3', 'camera', 'scene', 'options', 'shader', 'device' or 'worker'. */
+export class LodeError extends Error {
+  readonly place: string;
+  readonly reason: string;
+}
+export interface LodeFault {
+  place: string;
+  message: string;
+  /** Nothing more is loaded. */
+  isFatal: boolean;
+  page?: number;
+}
+
+export interface LodeOptions {
+  /** Of the colour target. */
+  format: GPUTextureFormat;
+  /** Of the depth target; depth24plus. */
+  depthFormat?: GPUTextureFormat;
+  /** less; greater where depths are reversed. */
+  depthCompare?: GPUCompareFunction;
+  sampleCount?: number;
+  /** WGSL with `fn shade(s: Surface, base: vec4f) -> vec4f`; Surface is in draw.wgsl. Left out: a light from the eye. */
+  shade?: string;
+  /** Of bind groups 1 and up, which `shade` reads. The caller sets them before draw(). */
+  bindGroupLayouts?: GPUBindGroupLayout[];
+  /** What a cut may be off, pixels of the target; 1. May be set later: lode.pixelError. */
+  pixelError?: number;
+  /** Bytes of decoded pages on the GPU; 64 MiB, and at most what the device binds. The coarsest pages are always kept. */
+  poolBytes?: number;
+  /** Widens by this share the view for which pages are requested; 0.1. */
+  margin?: number;
+  /** false: what is outside the view is drawn too, as shadows may want. */
+  isCulled?: boolean;
+  /** What errors cover, of an asset that was built with it. */
+  promise?: PromiseKind;
+  headers?: Record<string, string>;
+  credentials?: RequestCredentials;
+  /** Within which 64 KiB of a request have to come; 30,000. */
+  timeoutMs?: number;
+  /** Where a bundler or an origin wants another worker than stream/worker.js of this package. */
+  createWorker?: () => Worker;
+  /** The compiled meshlode.wasm, where it does not lie beside index.js. */
+  module?: WebAssembly.Module;
+  /** Of faults after opening; left out, they go to the console. */
+  onError?: (fault: LodeFault) => void;
+  /** Pages have come: draw now, if you draw on demand. */
+  onChange?: () => void;
+}
+
+/** Of the last answer of the worker: see LodeStatistics of meshlode/three. */
+export interface Statistics {
+  selectMs: number;
+  unpackMs: number;
+  moduleBytes: number;
+  bytesRead: number;
+  fileBytes: number;
+  requests: number;
+  poolUsed: number;
+  missing: number;
+  failed: number;
+  isFull: boolean;
+  isLoading: boolean;
+}
+
+export interface Frame {
+  /** Of the camera, in the asset's world; heightPx of the target. */
+  view: View;
+  /** World to clip space, 16 numbers, columns; depths as the pipeline's depthCompare takes them. Doubles keep far places exact. */
+  viewProjection: ArrayLike<number>;
+}
+
+export class Lode {
+  pixelError: number;
+  readonly statistics: Statistics | null;
+  /** Whether the last view is answered, nothing is being loaded and all that came is selected from. */
+  readonly isSettled: boolean;
+  /** Pages that the last select() chose from: page p is bit p % 32 of word p / 32. */
+  readonly resident: Uint32Array;
+  /** Encodes the selection of a frame. Submit it before the next frame's select(). */
+  select(encoder: GPUCommandEncoder, frame: Frame): void;
+  /** Encodes one indirect draw of what the frame selected. Sets the pipeline and bind group 0. */
+  draw(pass: GPURenderPassEncoder | GPURenderBundleEncoder): void;
+  /** What the last submitted selection chose. Waits for the GPU: for tests and tools. */
+  readDrawn(): Promise<Cut>;
+  /** Requests failed pages again. */
+  retry(): void;
+  /** Ends the worker and frees GPU memory. */
+  dispose(): void;
+}
+
+/** A device whose buffers may be as large as the adapter allows. Null where there is no WebGPU: draw with meshlode/three there. */
+export function requestDevice(options?: GPURequestAdapterOptions): Promise<GPUDevice | null>;
+/** Opens an asset: an address, or a Blob such as a dropped file. Rejects with a LodeError. */
+export function openLode(device: GPUDevice | null, file: string | URL | Blob, options: LodeOptions): Promise<Lode>;
