@@ -92,6 +92,16 @@ async function readBack(from, size) {
   return bytes;
 }
 
+/** The worker, without some of its pages: the main side is to select from any set. */
+function withholding(share) {
+  const worker = new Worker('/meshlode/stream/worker.js', { type: 'module' });
+  const outer = { postMessage: (message) => worker.postMessage(message), terminate: () => worker.terminate() };
+  const isLost = ({ type, page }) => type === 'page' && (Math.imul(page + 1, 2654435761) >>> 0) / 2 ** 32 < share;
+  worker.onmessage = (event) => isLost(event.data) || outer.onmessage(event);
+  worker.onerror = (event) => outer.onerror(event);
+  return outer;
+}
+
 const test = {
   lode: null, errors: [], lost, changes: 0, camera: null, size: [640, 480],
   hasDevice: device !== null, realDevice: device,
@@ -143,8 +153,9 @@ const test = {
     return seen;
   },
 
-  /** Opens an asset; 'ok', or what was refused with its place. */
-  async open(url, options = {}) {
+  /** Opens an asset; 'ok', or what was refused with its place. `withhold`: the share of pages that never come, whatever needs them. */
+  async open(url, { withhold, ...options } = {}) {
+    if (withhold) options.createWorker = () => withholding(withhold);
     test.lode?.dispose();
     test.errors = [];
     test.changes = 0;
