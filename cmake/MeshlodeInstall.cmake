@@ -60,6 +60,26 @@ install(FILES include/meshlode/format.h include/meshlode/page.h include/meshlode
               src/run/select/metric.h
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/meshlode COMPONENT dev)
 
+# Of the renderer's shaders what an engine may take (docs/reference/shaders.md), and SPIR-V beside where there is a compiler. In
+# the tree metric.h lies elsewhere.
+set(meshlode_shader_dir ${CMAKE_INSTALL_INCLUDEDIR}/meshlode/gpu)
+set(meshlode_glsl alpha.glsl clusters.comp common.glsl cull.glsl hardware.frag hardware.mesh hardware.vert instances.comp nodes.glsl
+                  page.glsl persistent.comp pyramid.comp raster.comp raster_clip.comp raster_far.comp roots.comp screen.glsl strips.glsl
+                  traverse.comp)
+list(TRANSFORM meshlode_glsl PREPEND src/draw/gpu/shaders/)
+install(FILES ${meshlode_glsl} DESTINATION ${meshlode_shader_dir} COMPONENT dev)
+set(meshlode_frame src/draw/gpu/shaders/frame.h)
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${meshlode_frame})
+file(READ ${meshlode_frame} meshlode_frame_text)
+string(REPLACE "\"run/select/metric.h\"" "\"meshlode/metric.h\"" meshlode_frame_text "${meshlode_frame_text}")
+file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/shaders/frame.h CONTENT "${meshlode_frame_text}" @ONLY)
+install(FILES ${PROJECT_BINARY_DIR}/shaders/frame.h DESTINATION ${meshlode_shader_dir} COMPONENT dev)
+if(MESHLODE_VULKAN)
+  list(TRANSFORM meshlode_spirv APPEND .spv OUTPUT_VARIABLE meshlode_spirv_files)
+  list(TRANSFORM meshlode_spirv_files PREPEND ${PROJECT_BINARY_DIR}/src/draw/shaders/)
+  install(FILES ${meshlode_spirv_files} DESTINATION ${meshlode_shader_dir} COMPONENT dev)
+endif()
+
 # Shows the functions of <meshlode/build.h> and <meshlode/meshlode_build.h>, and nothing else: CGAL and what else is inside
 # is nobody's business.
 # meshlode_thread_rand stays out: a library must not replace its host's rand().

@@ -30,6 +30,40 @@ if command -v pkg-config >/dev/null; then
   cmp "$work/triangle.lode" "$work/again.lode"
 fi
 
+# Shaders: complete in the prefix, equal to the SPIR-V beside, and documented.
+shaders=$work/prefix/include/meshlode/gpu
+compile() { glslc --target-env=vulkan1.3 -O -I "$work/prefix/include" "$@" -o "$work/shader.spv" || { echo "FAILED: $*"; exit 1; }; }
+compiled=0
+for spirv in "$shaders"/*.spv; do
+  name=$(basename "$spirv" .spv) stage=${spirv%.spv}; stage=${stage##*.}
+  case $name in
+    hardware*.frag) source=hardware.frag ;;
+    *) source=${name/_mask/} ;;
+  esac
+  flags=()
+  [[ $name != *_mask* ]] || flags+=(-DALPHA_MASK)
+  [[ $name != hardware_mesh* ]] || flags+=(-DMESH_SHADER)
+  compile "${flags[@]}" "$shaders/$source"
+  cmp "$work/shader.spv" "$spirv" || { echo "FAILED: $stage $name is not what its source becomes"; exit 1; }
+  compiled=$((compiled + 1))
+done
+if [ -e "$shaders/raster.comp.spv" ]; then
+  [ "$compiled" -eq 18 ] || { echo "FAILED: $compiled shaders"; exit 1; }
+  for source in "$shaders"/*.comp "$shaders"/hardware.*[a-z]; do
+    [[ $source == *.spv ]] || [ -e "$source.spv" ] || { echo "FAILED: $source has no SPIR-V"; exit 1; }
+  done
+fi
+document=$consumer/../../../docs/reference/shaders.md
+{
+  sed -n 's/^layout(constant_id = [0-9]*) const uint \(k[A-Za-z]*\).*/\1/p' "$shaders"/*.comp "$shaders"/*.glsl "$shaders"/hardware.*[a-z]
+  sed -n '/^struct GpuFrame/,$ s/^  GPU_POINTER([A-Za-z]*) \([a-z_]*\);.*/\1/p' "$shaders/frame.h"
+} | LC_ALL=C sort -u >"$work/names"
+[ "$(wc -l <"$work/names")" -gt 30 ] || { echo "FAILED: the shaders' bindings are not found"; exit 1; }
+while read -r name; do
+  grep -q "\`$name\`" "$document" || { echo "FAILED: $name is not in docs/reference/shaders.md"; exit 1; }
+done <"$work/names"
+echo "$compiled shaders compile to what is installed; $(wc -l <"$work/names") names of bindings are documented"
+
 needed() { readelf -d "$1" | sed -n 's/.*(NEEDED).*\[\(.*\)\].*/\1/p' | LC_ALL=C sort; }
 allowed='^(libc|libm|libstdc\+\+|libgcc_s|ld-linux-x86-64)\.so'
 if needed "$work/consumer/use_runtime" | grep -Ev "$allowed"; then
