@@ -210,6 +210,10 @@ async function lookAtHostile(browser, server) {
   await refused('no file', await tab.value(`test.open('/assets/missing.lode')`), /^bytes 0 to/);
   await refused('a shader that is none', await tab.value(`test.open('/assets/terrain.lode', { shade: 'fn shade(' })`), /^shader$/);
   await refused('a pool that is no number', await tab.value(`test.open('/assets/terrain.lode', { poolBytes: NaN })`), /^options$/);
+  expect((await tab.value(`test.open('/assets/terrain.lode', { poolBytes: 1e15 })`)) === 'ok', 'a pool beyond the device: opens');
+  await tab.value('test.setCamera({ eye: [NaN, 0, 0], target: [0, 0, 0], near: 1 })');
+  await tab.until(`(test.settle(0.1), test.errors.length > 0)`, 10); // nothing was selected yet
+  await refused('a camera that is none', (await tab.value('test.errors'))[0] ?? 'nothing', /^camera$/);
   await refused('no format', await tab.value(`test.open('/assets/terrain.lode', { format: undefined })`), /^options$/);
   // A device with room for less than the tables.
   await tab.value(`(test.device = new Proxy({}, { get: (_, name) => name === 'limits' ? { maxStorageBufferBindingSize: 4096, maxBufferSize: 4096 } :

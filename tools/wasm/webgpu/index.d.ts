@@ -29,7 +29,7 @@ export interface LodeOptions {
   bindGroupLayouts?: GPUBindGroupLayout[];
   /** What a cut may be off, pixels of the target; 1. May be set later: lode.pixelError. */
   pixelError?: number;
-  /** Bytes of decoded pages on the GPU; 64 MiB, and at most what the device binds. The coarsest pages are always kept. */
+  /** Bytes of decoded pages on the GPU; 64 MiB, and at most three quarters of what the device binds. The coarsest pages are always kept. */
   poolBytes?: number;
   /** Widens by this share the view for which pages are requested; 0.1. */
   margin?: number;

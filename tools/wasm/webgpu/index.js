@@ -14,11 +14,12 @@ const INSTANCE_WORDS = 48;
 const MATERIAL_WORDS = 8;
 const RUN_BYTES = 256; // of uniforms per level: the alignment of offsets that every device has
 const LEAST_BYTES = 256; // of a buffer: an element of each table at least is bound
+const MOST_LEVELS = 2 ** 24; // of all meshes: a small file may claim 65,536 levels for each
 const ROW = 65535; // workgroups of a dispatch in one direction
 
 const DEFAULTS = {
   pixelError: 1, // pixels of the target
-  poolBytes: 64 * 2 ** 20, // of pages: 500 of 128 KiB, 10 million triangles as the dragon's; half of what every device binds
+  poolBytes: 64 * 2 ** 20, // of pages: 500 of 128 KiB, 17 million triangles of the dragon's finest level; half of what every device binds
   margin: 0.1, // of the view on each side, for what is requested: as in meshlode/three
   timeoutMs: 30000,
 };
@@ -98,7 +99,7 @@ export class Lode {
 
   async open(file) {
     const { headers, credentials, timeoutMs, promise, module } = this.#options;
-    const poolBytes = Math.min(this.#options.poolBytes, this.#most);
+    const poolBytes = Math.min(this.#options.poolBytes, 0.75 * this.#most); // root pages are in slots beside it
     const source = file instanceof Blob ? file : new URL(file, globalThis.document?.baseURI).href;
     const worker = (this.#worker = this.#options.createWorker?.() ?? new Worker(new URL('../stream/worker.js', import.meta.url), { type: 'module' }));
     const opened = new Promise((resolve, reject) => {
@@ -148,7 +149,7 @@ export class Lode {
     const levelOf = (group) => groups[14 * group + 12] >>> 16;
     const most = counts.reduce((level, [first, count]) => (count > 0 ? Math.max(level, levelOf(first)) : level), 0);
     const stride = most + 2;
-    if (stride * meshes.length * 4 > this.#most) throw new LodeError('scene', `${meshes.length} meshes of ${most + 1} levels`);
+    if (stride * meshes.length > MOST_LEVELS) throw new LodeError('scene', `${meshes.length} meshes of up to ${most + 1} levels`);
     const starts = new Uint32Array(stride * meshes.length); // [0] of a mesh: its end; [level + 1]: its first group of that level or below
     const widths = new Uint32Array(most + 1);
     counts.forEach(([first, count], m) => {

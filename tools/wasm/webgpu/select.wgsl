@@ -23,9 +23,10 @@ const ERROR_CAP = 4611686018427387904.0f;
 
 fn group_float(group: u32, word: u32) -> f32 { return bitcast<f32>(groups[14u * group + word]); }
 
-// A product as it is rounded. WGSL allows a * b + c in one rounding; nothing can be known of an addend that a load has touched.
-fn rounded(product: f32) -> f32 { return bitcast<f32>(bitcast<u32>(product) ^ run.zero); }
-fn row(at: vec4f, c: vec3f) -> f32 { return ((rounded(at.x * c.x) + rounded(at.y * c.y)) + rounded(at.z * c.z)) + at.w; }
+// A product or a sum as it is rounded. WGSL lets a compiler fuse and reorder operations, but not across a value that it does not know.
+fn rounded(value: f32) -> f32 { return bitcast<f32>(bitcast<u32>(value) ^ run.zero); }
+fn sum_of(a: f32, b: f32, c: f32) -> f32 { return rounded(rounded(rounded(a) + rounded(b)) + rounded(c)); }
+fn row(at: vec4f, c: vec3f) -> f32 { return sum_of(at.x * c.x, at.y * c.y, at.z * c.z) + at.w; }
 
 // metric_passes() of <meshlode/metric.h>
 fn passes(i: u32, group: u32) -> bool {
@@ -33,12 +34,12 @@ fn passes(i: u32, group: u32) -> bool {
   if (!(error < INFINITE_ERROR)) { return false; }
   let e = min(rounded(error * instances[i].error_scale), ERROR_CAP);
   if (e <= instances[i].near_distance) { return true; }
-  let reach = e + rounded(group_float(group, 3u) * instances[i].scale);
+  let reach = rounded(e + rounded(group_float(group, 3u) * instances[i].scale));
   let center = vec3f(group_float(group, 0u), group_float(group, 1u), group_float(group, 2u));
-  let x = row(instances[i].view[0], center);
-  let y = row(instances[i].view[1], center);
-  let z = row(instances[i].view[2], center);
-  return rounded(reach * reach) <= (rounded(x * x) + rounded(y * y)) + rounded(z * z);
+  let x = rounded(row(instances[i].view[0], center));
+  let y = rounded(row(instances[i].view[1], center));
+  let z = rounded(row(instances[i].view[2], center));
+  return rounded(reach * reach) <= sum_of(x * x, y * y, z * z);
 }
 
 // Beyond all doubt: the bounds are those of src/draw/gpu/shaders/cull.glsl.
