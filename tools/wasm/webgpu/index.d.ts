@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// <reference types="@webgpu/types" />
+// GPUDevice and others: of TypeScript's DOM library; before they were in it, of @webgpu/types.
 import type { Cut, PromiseKind, View } from '../index.js';
 
 /** A refusal with its place: a range of the file, 'head', 'page 3', 'camera', 'scene', 'options', 'shader', 'device' or 'worker'. */
