@@ -14,7 +14,7 @@ export class Batch {
   #slots = 0; // in use or free
   #slotCapacity = FIRST_SLOTS;
   #free = [];
-  #shown = []; // per instance of three: its slot, its instance of the asset, whether it is visible
+  #shown = []; // per instance of three: its slot, cluster and instance of the asset, whether it is visible
   #used = 0;
 
   /** `uvSets`: TEXCOORD_n of each stored set; `slot`: the most vertices and triangles of a cluster. */
@@ -23,8 +23,8 @@ export class Batch {
     this.#uvNames = uvSets.map((set) => (set === 0 ? 'uv' : `uv${set}`));
     const { vertices, indices } = this.#slot;
     this.object = new THREE.BatchedMesh(FIRST_SLOTS, FIRST_SLOTS * vertices, FIRST_SLOTS * indices, material);
-    const { name, transparent: sortObjects } = material;
-    Object.assign(this.object, { name, sortObjects, frustumCulled: false, perObjectFrustumCulled: false }); // the worker culls
+    const [{ name, transparent: sortObjects }, userData] = [material, { shown: this.#shown }];
+    Object.assign(this.object, { name, userData, sortObjects, frustumCulled: false, perObjectFrustumCulled: false }); // the worker culls
     // three flips the winding by the determinant of an object, not of an instance: mirrored instances are mirrored twice.
     if (isMirrored) this.object.scale.set(-1, 1, 1);
   }
@@ -65,7 +65,7 @@ export class Batch {
   begin() {
     this.#used = 0;
   }
-  show(slot, instance, matrix) {
+  show(slot, cluster, instance, matrix) {
     const id = this.#used++;
     let shown = this.#shown[id];
     if (!shown) {
@@ -77,7 +77,7 @@ export class Batch {
     if (shown.slot !== slot) this.object.setGeometryIdAt(id, slot).setVisibleAt(id, false);
     if (shown.instance !== instance) this.object.setMatrixAt(id, matrix);
     this.object.setVisibleAt(id, true);
-    Object.assign(shown, { slot, instance, isVisible: true });
+    Object.assign(shown, { slot, cluster, instance, isVisible: true });
   }
   end() {
     for (let id = this.#used; id < this.#shown.length && this.#shown[id].isVisible; ++id) {

@@ -64,6 +64,7 @@ export interface LodeEventMap extends Object3DEventMap {
   error: { place: string; message: string; isFatal: boolean; page?: number; image?: number };
 }
 
+/** Its children are BatchedMesh; `userData.shown[batchId]` is {cluster, instance, isVisible}, for picking and for colours of clusters. */
 export class Lode extends Object3D<LodeEventMap> {
   pixelError: number;
   /** Of all instances, in the space of this object. */

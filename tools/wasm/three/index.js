@@ -233,7 +233,7 @@ export class Lode extends THREE.Object3D {
       drawn.clusters.forEach((cluster, i) => {
         const instance = drawn.instances[i];
         const pieces = this.#clusters.get(cluster)[Number(this.#isMirrored[instance])];
-        for (const { batch, slot } of pieces) batch.show(slot, instance, this.#matrices[instance]);
+        for (const { batch, slot } of pieces) batch.show(slot, cluster, instance, this.#matrices[instance]);
       });
       for (const { batch } of this.#batches) batch.end();
       this.drawn = { ...drawn, ...query, resident };
