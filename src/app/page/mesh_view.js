@@ -1,20 +1,24 @@
 // SPDX-License-Identifier: MIT
 // A cut in 3D by WebGL2: vertices of all its clusters in one buffer, in world space around the middle of what is shown, each
 // with the number of its cluster, whose colour is looked up in a texture: measures and selection change without new geometry.
-import { NONE } from './index.js';
+import { NONE } from 'meshlode';
+import { FIELD_OF_VIEW, Orbit } from './orbit.js';
 
 const COLOUR_WIDTH = 1024;
-const FIELD_OF_VIEW = 0.7; // vertical, radians
-const FRAME_SHARE = 0.92; // of the picture that Home fills
+const NORMALS = 1; // of the uniform `mode`: 0 is colours of clusters, 2 edges
+const EDGES = 2;
 
 const VERTEX = `#version 300 es
 uniform mat4 camera;
 in vec3 position;
 in uint cluster;
+in vec3 normal;
 out vec3 place;
+out vec3 shaded;
 flat out uint id;
 void main() {
   place = position;
+  shaded = normal;
   id = cluster;
   gl_Position = camera * vec4(position, 1.0);
 }`;
@@ -26,11 +30,22 @@ precision highp int;
 uniform highp sampler2D colours;
 uniform vec3 eye;
 uniform vec3 mark;
+uniform vec3 edge;
+uniform int mode;
 in vec3 place;
+in vec3 shaded;
 flat in uint id;
 out vec4 colour;
 void main() {
   vec3 normal = normalize(cross(dFdx(place), dFdy(place)));
+  if (mode == 1) {
+    colour = vec4(0.5 + 0.5 * (dot(shaded, shaded) > 0.0 ? normalize(shaded) : normal), 1.0);
+    return;
+  }
+  if (mode == 2) {
+    colour = vec4(edge, 1.0);
+    return;
+  }
   float light = 0.35 + 0.65 * abs(dot(normal, normalize(eye - place)));
   vec4 own = texelFetch(colours, ivec2(int(id & 1023u), int(id >> 10u)), 0);
   bool isStripe = own.a < 0.75 && mod(gl_FragCoord.x + gl_FragCoord.y, 10.0) < 5.0;
@@ -41,6 +56,7 @@ const PICK = `#version 300 es
 precision highp float;
 precision highp int;
 in vec3 place;
+in vec3 shaded;
 flat in uint id;
 out uvec2 picked;
 void main() { picked = uvec2(id + 1u, 0u); }`;
@@ -48,7 +64,7 @@ void main() { picked = uvec2(id + 1u, 0u); }`;
 export class MeshView {
   /** Throws where there is no WebGL2. */
   constructor(canvas, asset, { onSelect, onMove, onResize }) {
-    Object.assign(this, { canvas, asset, onSelect, onMove });
+    Object.assign(this, { canvas, asset, hasMoved: false, mode: 0, isWire: false, items: [] });
     const gl = canvas.getContext('webgl2', { antialias: true });
     if (!gl) throw new Error('this browser has no WebGL2');
     this.gl = gl;
@@ -57,6 +73,7 @@ export class MeshView {
     this.decodedFloats = 0;
     this.count = 0;
     this.vertices = gl.createBuffer();
+    this.normals = gl.createBuffer();
     this.ids = gl.createBuffer();
     this.indices = gl.createBuffer();
     this.array = gl.createVertexArray();
@@ -64,9 +81,17 @@ export class MeshView {
     this.colourRows = Math.max(1, Math.ceil(asset.clusters.length / COLOUR_WIDTH));
     gl.enable(gl.DEPTH_TEST);
     this.#bindGeometry();
-    canvas.addEventListener('wheel', (event) => this.#wheel(event), { passive: false });
-    canvas.addEventListener('pointerdown', (event) => this.#press(event));
-    canvas.addEventListener('keydown', (event) => this.#key(event));
+    this.orbit = new Orbit(canvas, {
+      onMove: () => {
+        this.hasMoved = true;
+        this.draw();
+        onMove();
+      },
+      onClick: (x, y) => {
+        const cluster = this.pick(x, y);
+        if (cluster !== NONE) onSelect(cluster);
+      },
+    });
     new ResizeObserver(() => {
       this.draw();
       onResize();
@@ -74,49 +99,33 @@ export class MeshView {
   }
 
   /** The box that Home shows, world space: its middle, around which geometry is stored, and its half edges. */
-  frame({ center, half }) {
-    this.center = center;
-    this.half = half;
-    this.radius = Math.hypot(...half) || 1;
+  frame(box) {
+    this.center = box.center;
     this.decoded.clear();
     this.decodedFloats = 0;
-    this.#reset();
-  }
-
-  #reset() {
-    this.yaw = 0.6;
-    this.pitch = 0.35;
-    this.distance = 1;
-    this.distance = Math.max(this.#fittingDistance(), this.radius / 100);
-  }
-
-  /** From where all corners of the box are in the picture, with a rim. */
-  #fittingDistance() {
-    const { x, y, z } = cameraAxes(this.#eye());
-    const reach = FRAME_SHARE * Math.tan(FIELD_OF_VIEW / 2);
-    const aspect = this.canvas.clientWidth / Math.max(1, this.canvas.clientHeight) || 1;
-    let distance = 0;
-    for (let corner = 0; corner < 8; ++corner) {
-      const p = this.half.map((value, k) => ((corner >> k) & 1 ? value : -value));
-      const along = (axis) => axis[0] * p[0] + axis[1] * p[1] + axis[2] * p[2];
-      distance = Math.max(distance, along(z) + Math.max(Math.abs(along(x)) / aspect, Math.abs(along(y))) / reach);
-    }
-    return distance;
+    this.orbit.frame(box);
   }
 
   /** The camera as meshlode_view has it. */
   view() {
-    const eye = this.#eye();
     return {
-      eye: eye.map((value, k) => value + this.center[k]),
+      eye: this.orbit.eye().map((value, k) => value + this.center[k]),
       fovyRadians: FIELD_OF_VIEW,
-      nearDistance: this.#near(),
+      nearDistance: this.orbit.near(),
       heightPx: Math.max(1, Math.round(this.canvas.clientHeight * (window.devicePixelRatio || 1))),
     };
   }
 
+  setMode(measure, isWire) {
+    this.mode = measure === 'normals' ? NORMALS : 0;
+    if (isWire === this.isWire) return this.draw();
+    this.isWire = isWire;
+    this.setCut(this.items);
+  }
+
   /** items: [{cluster, transform: 3x4 or null, origin}] */
   setCut(items) {
+    this.items = items;
     let vertexCount = 0;
     let indexCount = 0;
     const parts = items.map((item) => {
@@ -126,22 +135,30 @@ export class MeshView {
       return part;
     });
     const positions = new Float32Array(3 * vertexCount);
+    const normals = new Float32Array(3 * vertexCount);
     const ids = new Uint32Array(vertexCount);
-    const indices = new Uint32Array(indexCount);
+    const indices = new Uint32Array(this.isWire ? 3 * indexCount : indexCount); // triangles, and behind them edges
     let v = 0;
     let i = 0;
     items.forEach(({ cluster, transform, origin }, k) => {
       const part = parts[k];
       place(part.positions, transform, origin, this.center, positions.subarray(3 * v, 3 * (v + part.vertexCount)));
+      if (part.normals) turn(part.normals, transform, normals.subarray(3 * v, 3 * (v + part.vertexCount)));
       ids.fill(cluster, v, v + part.vertexCount);
       for (const corner of part.triangles) indices[i++] = v + corner;
       v += part.vertexCount;
     });
+    for (let t = 0; this.isWire && t < indexCount; t += 3) {
+      for (let k = 0; k < 3; ++k) {
+        indices[i++] = indices[t + k];
+        indices[i++] = indices[t + ((k + 1) % 3)];
+      }
+    }
     const gl = this.gl;
-    gl.bindBuffer(gl.ARRAY_BUFFER, this.vertices);
-    gl.bufferData(gl.ARRAY_BUFFER, positions, gl.DYNAMIC_DRAW);
-    gl.bindBuffer(gl.ARRAY_BUFFER, this.ids);
-    gl.bufferData(gl.ARRAY_BUFFER, ids, gl.DYNAMIC_DRAW);
+    for (const [buffer, data] of [[this.vertices, positions], [this.normals, normals], [this.ids, ids]]) {
+      gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
+      gl.bufferData(gl.ARRAY_BUFFER, data, gl.DYNAMIC_DRAW);
+    }
     gl.bindVertexArray(this.array);
     gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, indices, gl.DYNAMIC_DRAW);
     this.count = indexCount;
@@ -177,20 +194,33 @@ export class MeshView {
     const ground = this.theme.canvas.map((value) => value / 255);
     gl.clearColor(ground[0], ground[1], ground[2], 1);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
-    this.#render(this.programs.draw, width / height);
+    // Triangles a step behind their edges.
+    if (this.isWire) gl.enable(gl.POLYGON_OFFSET_FILL);
+    gl.polygonOffset(1, 1);
+    this.#render(this.programs.draw, width / height, this.mode);
+    gl.disable(gl.POLYGON_OFFSET_FILL);
+    if (this.isWire) this.#render(this.programs.draw, width / height, EDGES);
   }
 
-  #render(program, aspect) {
+  toPng(done) {
+    this.drawNow();
+    this.canvas.toBlob(done);
+  }
+
+  #render(program, aspect, mode) {
     const gl = this.gl;
-    const eye = this.#eye();
+    const at = (name) => gl.getUniformLocation(program, name);
     gl.useProgram(program);
-    gl.uniformMatrix4fv(gl.getUniformLocation(program, 'camera'), false, cameraMatrix(eye, aspect, this.#near(), this.#far()));
-    gl.uniform3fv(gl.getUniformLocation(program, 'eye'), eye);
-    gl.uniform3fv(gl.getUniformLocation(program, 'mark'), this.theme.mark.map((value) => value / 255));
-    gl.uniform1i(gl.getUniformLocation(program, 'colours'), 0);
+    gl.uniformMatrix4fv(at('camera'), false, cameraMatrix(this.orbit, aspect));
+    gl.uniform3fv(at('eye'), this.orbit.eye());
+    gl.uniform3fv(at('mark'), this.theme.mark.map((value) => value / 255));
+    gl.uniform3fv(at('edge'), this.theme.isDark ? [0.9, 0.9, 0.9] : [0.1, 0.1, 0.1]);
+    gl.uniform1i(at('mode'), mode);
+    gl.uniform1i(at('colours'), 0);
     gl.bindTexture(gl.TEXTURE_2D, this.colours);
     gl.bindVertexArray(this.array);
-    gl.drawElements(gl.TRIANGLES, this.count, gl.UNSIGNED_INT, 0);
+    if (mode === EDGES) gl.drawElements(gl.LINES, 2 * this.count, gl.UNSIGNED_INT, 4 * this.count);
+    else gl.drawElements(gl.TRIANGLES, this.count, gl.UNSIGNED_INT, 0);
   }
 
   /** The cluster at a place of the canvas, CSS pixels; NONE for the ground. */
@@ -209,7 +239,7 @@ export class MeshView {
     gl.viewport(0, 0, canvas.width, canvas.height);
     gl.clearBufferuiv(gl.COLOR, 0, [0, 0, 0, 0]);
     gl.clear(gl.DEPTH_BUFFER_BIT);
-    this.#render(this.programs.pick, canvas.width / canvas.height);
+    this.#render(this.programs.pick, canvas.width / canvas.height, 0);
     const scale = canvas.height / Math.max(1, canvas.clientHeight);
     const pixel = new Uint32Array(4);
     gl.readPixels(Math.round(x * scale), canvas.height - 1 - Math.round(y * scale), 1, 1, gl.RGBA_INTEGER, gl.UNSIGNED_INT, pixel);
@@ -229,6 +259,9 @@ export class MeshView {
     gl.bindBuffer(gl.ARRAY_BUFFER, this.ids);
     gl.enableVertexAttribArray(1);
     gl.vertexAttribIPointer(1, 1, gl.UNSIGNED_INT, 0, 0);
+    gl.bindBuffer(gl.ARRAY_BUFFER, this.normals);
+    gl.enableVertexAttribArray(2);
+    gl.vertexAttribPointer(2, 3, gl.FLOAT, false, 0, 0);
     gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.indices);
   }
 
@@ -246,66 +279,6 @@ export class MeshView {
     }
     return part;
   }
-
-  #eye() {
-    const flat = Math.cos(this.pitch) * this.distance;
-    return [Math.sin(this.yaw) * flat, Math.sin(this.pitch) * this.distance, Math.cos(this.yaw) * flat];
-  }
-  #near() {
-    return Math.max(this.distance - 1.5 * this.radius, this.distance / 500);
-  }
-  #far() {
-    return this.distance + 1.5 * this.radius;
-  }
-
-  #moved() {
-    this.pitch = Math.max(-1.55, Math.min(1.55, this.pitch));
-    this.distance = Math.max(this.radius / 1000, Math.min(this.radius * 50, this.distance));
-    this.draw();
-    this.onMove();
-  }
-
-  #wheel(event) {
-    event.preventDefault();
-    this.distance *= Math.exp(event.deltaY * 0.001);
-    this.#moved();
-  }
-
-  #press(event) {
-    const begin = { x: event.clientX, y: event.clientY, yaw: this.yaw, pitch: this.pitch };
-    let hasTurned = false;
-    const move = (e) => {
-      hasTurned ||= Math.hypot(e.clientX - begin.x, e.clientY - begin.y) > 4;
-      if (!hasTurned) return;
-      this.yaw = begin.yaw - (e.clientX - begin.x) * 0.008;
-      this.pitch = begin.pitch + (e.clientY - begin.y) * 0.008;
-      this.#moved();
-    };
-    const end = (e) => {
-      this.canvas.removeEventListener('pointermove', move);
-      if (hasTurned || e.type === 'pointercancel') return;
-      const box = this.canvas.getBoundingClientRect();
-      const cluster = this.pick(e.clientX - box.left, e.clientY - box.top);
-      if (cluster !== NONE) this.onSelect(cluster);
-    };
-    this.canvas.setPointerCapture(event.pointerId);
-    this.canvas.addEventListener('pointermove', move);
-    this.canvas.addEventListener('pointerup', end, { once: true });
-    this.canvas.addEventListener('pointercancel', end, { once: true });
-  }
-
-  #key(event) {
-    if (event.key === 'ArrowLeft') this.yaw -= 0.1;
-    else if (event.key === 'ArrowRight') this.yaw += 0.1;
-    else if (event.key === 'ArrowUp') this.pitch += 0.1;
-    else if (event.key === 'ArrowDown') this.pitch -= 0.1;
-    else if (event.key === '+' || event.key === '=') this.distance *= 0.85;
-    else if (event.key === '-') this.distance /= 0.85;
-    else if (event.key === 'Home') this.#reset();
-    else return;
-    event.preventDefault();
-    this.#moved();
-  }
 }
 
 /** Mesh space to world, around a middle. */
@@ -316,6 +289,18 @@ function place(from, transform, origin, center, to) {
     const y = from[i + 1] + origin[1];
     const z = from[i + 2] + origin[2];
     for (let k = 0; k < 3; ++k) to[i + k] = t[4 * k] * x + t[4 * k + 1] * y + t[4 * k + 2] * z + t[4 * k + 3] - center[k];
+  }
+}
+
+/** Normals to world: by the cofactors of the transform, which are right under unequal scales too, and inwards where it mirrors. */
+function turn(from, transform, to) {
+  const t = transform ?? [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0];
+  const minor = (i, k) => t[4 * ((i + 1) % 3) + ((k + 1) % 3)] * t[4 * ((i + 2) % 3) + ((k + 2) % 3)] -
+    t[4 * ((i + 1) % 3) + ((k + 2) % 3)] * t[4 * ((i + 2) % 3) + ((k + 1) % 3)];
+  const rows = [0, 1, 2].map((i) => [0, 1, 2].map((k) => minor(i, k)));
+  const sign = t[0] * rows[0][0] + t[1] * rows[0][1] + t[2] * rows[0][2] < 0 ? -1 : 1;
+  for (let i = 0; i < from.length; i += 3) {
+    for (let k = 0; k < 3; ++k) to[i + k] = sign * (rows[k][0] * from[i] + rows[k][1] * from[i + 1] + rows[k][2] * from[i + 2]);
   }
 }
 
@@ -330,24 +315,16 @@ function compile(gl, fragment) {
   }
   gl.bindAttribLocation(program, 0, 'position');
   gl.bindAttribLocation(program, 1, 'cluster');
+  gl.bindAttribLocation(program, 2, 'normal');
   gl.linkProgram(program);
   if (!gl.getProgramParameter(program, gl.LINK_STATUS)) throw new Error(gl.getProgramInfoLog(program));
   return program;
 }
 
-/** Of a camera that looks from the eye to the origin, y up: right, up and backwards. */
-function cameraAxes(eye) {
-  const length = Math.hypot(...eye);
-  const z = eye.map((value) => value / length);
-  const flat = Math.hypot(z[0], z[2]);
-  const x = [z[2] / flat, 0, -z[0] / flat];
-  const y = [z[1] * x[2] - z[2] * x[1], z[2] * x[0] - z[0] * x[2], z[0] * x[1] - z[1] * x[0]];
-  return { x, y, z };
-}
-
-/** Looks from the eye to the origin; column-major. */
-function cameraMatrix(eye, aspect, near, far) {
-  const { x, y, z } = cameraAxes(eye);
+/** Of an orbit's camera; column-major. */
+function cameraMatrix(orbit, aspect) {
+  const { x, y, z } = orbit.axes();
+  const [eye, near, far] = [orbit.eye(), orbit.near(), orbit.far()];
   const focus = 1 / Math.tan(FIELD_OF_VIEW / 2);
   const depth = (far + near) / (near - far);
   const shift = (2 * far * near) / (near - far);

@@ -12,6 +12,9 @@ namespace {
 constexpr unsigned char kFrame[] = {
 #include "viewer.html.inc"
 };
+constexpr unsigned char kViewerPage[] = {
+#include "index.html.inc"
+};
 constexpr unsigned char kStyle[] = {
 #include "viewer.css.inc"
 };
@@ -30,11 +33,23 @@ constexpr unsigned char kDag[] = {
 constexpr unsigned char kGraph[] = {
 #include "graph.js.inc"
 };
-constexpr unsigned char kMeshView[] = {
-#include "mesh_view.js.inc"
+constexpr unsigned char kOrbit[] = {
+#include "orbit.js.inc"
+};
+constexpr unsigned char kTreemap[] = {
+#include "treemap.js.inc"
+};
+constexpr unsigned char kAddress[] = {
+#include "address.js.inc"
 };
 constexpr unsigned char kViewer[] = {
 #include "viewer.js.inc"
+};
+constexpr unsigned char kMeshView[] = {
+#include "mesh_view.js.inc"
+};
+constexpr unsigned char kEmbedded[] = {
+#include "embedded.js.inc"
 };
 
 constexpr unsigned char kOverviewFrame[] = {
@@ -64,6 +79,13 @@ std::string_view page_frame() {
   return text_of(kFrame);
 }
 
+std::string_view page_main() {
+  constexpr std::string_view kEnd = "</main>\n";
+  const std::string_view page = text_of(kViewerPage);
+  const std::size_t begin = page.find("<main>");
+  return page.substr(begin, page.find(kEnd) + kEnd.size() - begin);
+}
+
 std::string_view page_style() {
   return text_of(kStyle);
 }
@@ -74,8 +96,9 @@ std::string_view page_licences() {
 }
 
 std::span<const std::string_view> page_scripts() {
-  static const std::array texts{text_of(kRuntime), text_of(kDag), text_of(kGraph), text_of(kMeshView),
-                                text_of(kViewer)};
+  static const std::array texts{text_of(kRuntime), text_of(kDag),      text_of(kGraph),
+                                text_of(kOrbit),   text_of(kTreemap),  text_of(kAddress),
+                                text_of(kViewer),  text_of(kMeshView), text_of(kEmbedded)};
   return texts;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The fixed texts of pages, which lie beside this file as they are edited: HTML, CSS and scripts.
-// These go into other people's pages, and are MIT.
+// The fixed texts of pages, which lie beside this file as they are edited, or in docs/examples/viewer: HTML, CSS and
+// scripts. These go into other people's pages, and are MIT.
 #pragma once
 
 #include <span>
@@ -10,6 +10,8 @@ namespace meshlode::app {
 
 /// The page with its holes, @NAME@.
 [[nodiscard]] std::string_view page_frame();
+/// What the page shows: that of docs/examples/viewer, whose scripts it shares.
+[[nodiscard]] std::string_view page_main();
 [[nodiscard]] std::string_view page_style();
 /// Of page and runtime: what a copy of them must say.
 [[nodiscard]] std::string_view page_licences();

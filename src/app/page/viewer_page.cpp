@@ -204,9 +204,10 @@ Result<std::string> viewer_page(const run::Asset& asset, const ViewerInput& inpu
     }
   }
   TRY_LET(chosen, choose_pages(asset, input.max_page_bytes));
-  const std::array<PageHole, 7> holes{{
+  const std::array<PageHole, 8> holes{{
       {"@TITLE@", escape_html(input.title)},
       {"@LICENCES@", std::string(page_licences())},
+      {"@MAIN@", std::string(page_main())},
       {"@STYLE@", std::string(page_style())},
       {"@FACTS@", facts_json(asset, input, *chosen)},
       {"@PIECES@", pieces_html(asset, *chosen)},

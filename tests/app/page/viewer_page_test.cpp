@@ -149,10 +149,18 @@ TEST(ViewerPage, HasNoEndOfAScriptInItsScripts) {
   const std::string page = page_of(sample(), input_of("a.lode"));
   EXPECT_EQ(count_of(page, "\nimport "), 0U);
   EXPECT_EQ(count_of(page, "\nexport "), 0U);
-  for (const char* hole : {"@TITLE@", "@STYLE@", "@FACTS@", "@PIECES@", "@RUNTIME@", "@SCRIPT@"}) {
+  for (const char* hole : {"@TITLE@", "@MAIN@", "@STYLE@", "@FACTS@", "@PIECES@", "@RUNTIME@", "@SCRIPT@"}) {
     EXPECT_EQ(count_of(page_frame(), hole), std::string_view(hole) == "@TITLE@" ? 2U : 1U) << hole;
     EXPECT_EQ(count_of(page, hole), 0U) << hole;
   }
+}
+
+/// The page between <main> and </main> is that of docs/examples/viewer.
+TEST(ViewerPage, ShowsWhatTheViewerShows) {
+  const std::string page = page_of(sample(), input_of("a.lode"));
+  EXPECT_EQ(count_of(page, page_main()), 1U);
+  for (const char* part : {"<main>", "</main>", "id=\"mesh-view\"", "id=\"graph\"", "id=\"treemap\"", "id=\"theme\""})
+    EXPECT_EQ(count_of(page, part), 1U) << part;
 }
 
 TEST(ViewerPage, OfALargeAssetHoldsPagesThatMakeACut) {

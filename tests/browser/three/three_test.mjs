@@ -1,29 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // three_test.mjs NPM RESIDENT_CUT MESHLODE DATA SCREENSHOTS: meshlode/three from the tarball of `npm pack`, installed beside three
 // in an empty folder, in headless Chromium, against a server of ranges that may be hostile. What it draws is held against the
-// native cut id for id, and against `render` pixel by pixel. Skipped, aloud, without Chromium or npm's registry
-// (MESHLODE_REQUIRE_BROWSER=1, MESHLODE_REQUIRE_NPM=1: a failure). The dragon is asked for where MESHLODE_MODELS has it.
-import { execFileSync, spawnSync } from 'node:child_process';
-import { existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, statSync, writeFileSync } from 'node:fs';
-import { tmpdir } from 'node:os';
+// native cut id for id, and against `render` pixel by pixel. The dragon is asked for where MESHLODE_MODELS has it.
+import { execFileSync } from 'node:child_process';
+import { existsSync, mkdirSync, readFileSync, rmSync, statSync, writeFileSync } from 'node:fs';
 import { dirname, join, resolve } from 'node:path';
 import { fileURLToPath, pathToFileURL } from 'node:url';
-import { Browser, browserPath } from '../viewer/chromium.mjs';
+import { Browser } from '../viewer/chromium.mjs';
 import { colouredSheet, herd } from './herd.mjs';
 import { checkObject } from './object_checks.mjs';
+import { installPackage } from './package.mjs';
 import { lookAtServers } from './servers.mjs';
 import { serve } from './server.mjs';
 
 const [npmFolder, residentCut, meshlode, data, screenshots] = process.argv.slice(2).map((path) => resolve(path));
 const here = dirname(fileURLToPath(import.meta.url));
-const THREE = '0.187.0';
-const skip = (why, variable) => {
-  const isAsked = process.env[variable] === '1';
-  console.log(`${isAsked ? 'FAILED' : 'SKIPPED'}: ${why}`);
-  process.exit(isAsked ? 1 : 77);
-};
-if (!browserPath) skip('no Chromium (Debian: chromium)', 'MESHLODE_REQUIRE_BROWSER');
-
 let failures = 0;
 const expect = (holds, what) => {
   console.log(`${holds ? 'holds' : 'FAILED'}: ${what}`);
@@ -31,26 +22,8 @@ const expect = (holds, what) => {
 };
 const percent = (share) => `${(100 * share).toFixed(2)}%`;
 
-const work = mkdtempSync(join(tmpdir(), 'meshlode-three-'));
-const npm = (...args) => execFileSync('npm', args, { cwd: work, encoding: 'utf8', stdio: ['ignore', 'pipe', 'pipe'],
-  env: { ...process.env, npm_config_update_notifier: 'false', npm_config_audit: 'false', npm_config_fund: 'false',
-    npm_config_fetch_retries: '1', npm_config_fetch_retry_mintimeout: '1000' } });
-
-/** The package as a stranger has it: its tarball, installed. */
-function install() {
-  if (spawnSync('npm', ['--version']).status !== 0) skip('no npm (Debian: npm)', 'MESHLODE_REQUIRE_NPM');
-  const tarball = npm('pack', npmFolder, '--silent').trim().split('\n').pop();
-  const { size } = statSync(join(work, tarball));
-  expect(size <= 400e3, `the package has ${size} bytes packed, at most 400,000`);
-  writeFileSync(join(work, 'package.json'), '{"private": true, "type": "module"}');
-  try {
-    npm('install', '--ignore-scripts', `three@${THREE}`, `./${tarball}`);
-  } catch (error) {
-    console.log(error.stderr?.slice(-400) ?? error.message);
-    rmSync(work, { recursive: true });
-    skip('npm cannot install three', 'MESHLODE_REQUIRE_NPM');
-  }
-}
+const { work, npm, bytes } = installPackage(npmFolder);
+expect(bytes <= 400e3, `the package has ${bytes} bytes packed, at most 400,000`);
 
 const scenes = new Map();
 /** Builds a scene's asset for the web; its path. */
@@ -344,7 +317,6 @@ async function lookAtVite(browser) {
 }
 
 mkdirSync(screenshots, { recursive: true });
-install();
 await checkObject({ folder: work, expect });
 const server = await serve({ '/': here, '/node_modules/': join(work, 'node_modules'), '/assets/': work, '/data/': data,
   '/models/': process.env.MESHLODE_MODELS ?? data });

@@ -136,7 +136,7 @@ async function look(browser, url, name, view) {
   await tab.value(setRange('pixels', 60));
   const far = await tab.value(triangles);
   expect(near > 0 && far > 0 && far <= near, `${label}: the camera's cut, ${near} at one pixel, ${far} at 64`);
-  for (const measure of ['fill', 'ratio', 'stuck', 'page', 'cluster']) {
+  for (const measure of ['fill', 'ratio', 'stuck', 'page', 'level', 'normals', 'cluster']) {
     await tab.value(`(() => { const e = document.getElementById('measure'); e.value = '${measure}'; e.dispatchEvent(new Event('change')); })()`);
     expect((await tab.value(text('legend'))).length > 40, `${label}: ${measure} has a legend`);
   }
@@ -170,7 +170,7 @@ async function listen(browser, url) {
     if (order.includes(id)) break;
     order.push(id);
   }
-  const wanted = ['theme', 'mesh', 'measure', 'cut', 'pixels', 'mesh-view', 'graph'];
+  const wanted = ['theme', 'mesh', 'measure', 'cut', 'pixels', 'wire', 'share', 'png', 'csv', 'mesh-view', 'graph'];
   expect(wanted.every((id, k) => order[k] === id), `the key Tab goes to ${order.join(', ')}`);
   await tab.send('Accessibility.enable');
   const { nodes } = await tab.send('Accessibility.getFullAXTree');
@@ -185,14 +185,44 @@ async function listen(browser, url) {
   }
   expect((await tab.value(`document.getElementById('pixels').getAttribute('aria-valuetext')`)).length > 3, 'the slider says what it is at');
   await tab.value(`document.getElementById('mesh-view').focus()`);
-  const yaw = await tab.value(`window.meshlodeViewer.view.yaw`);
+  const yaw = await tab.value(`window.meshlodeViewer.view.orbit.yaw`);
   await tab.press('ArrowRight');
-  expect((await tab.value(`window.meshlodeViewer.view.yaw`)) !== yaw, 'keys turn the mesh');
+  expect((await tab.value(`window.meshlodeViewer.view.orbit.yaw`)) !== yaw, 'keys turn the mesh');
   await tab.value(`document.getElementById('graph').focus()`);
   await tab.press('ArrowDown');
   expect((await tab.value(text('selection'))).includes('Triangles'), 'a key in the graph selects, and the selection is told');
   expect(tab.said.length === 0, `keys: nothing on the console ${tab.said.join('; ')}`);
   await tab.close();
+}
+
+/** The hash brings a view back; nonsense in it is nothing. Buttons give a picture and a table. */
+async function lookAtAddress(browser, url) {
+  const tab = await browser.open(url, { width: 1280, height: 900, isDark: false });
+  await tab.until(isOver);
+  const state = `JSON.stringify([...['measure', 'pixels', 'error', 'mesh'].map((id) => document.getElementById(id).value), document.getElementById('wire').checked,
+    document.querySelector('input[name=cut]:checked').value, ${selected}, document.documentElement.dataset.theme, ${text('cut-text')},
+    meshlodeViewer.view.orbit.state().map((value) => value.toFixed(3))])`;
+  await tab.value(`(() => { const set = (id, value, event) => { const e = document.getElementById(id); e.value = value; e.dispatchEvent(new Event(event)); };
+    set('measure', 'level', 'change'); set('pixels', '17', 'input'); document.querySelector('input[value=uniform]').click(); set('error', '300', 'input');
+    for (const id of ['wire', 'theme']) document.getElementById(id).click(); document.getElementById('mesh-view').focus(); })()`);
+  await tab.press('ArrowLeft');
+  await tab.value(`meshlodeViewer.select(7); new Promise((done) => setTimeout(done, 600))`);
+  const [hash, before] = [await tab.value('location.hash'), await tab.value(state)];
+  const other = await browser.open(url + hash, { width: 1280, height: 900, isDark: false });
+  await other.until(isOver);
+  expect((await other.value(state)) === before, `an address brings the state back: ${hash}`);
+  await other.value(`window.given = []; URL.createObjectURL = (blob) => (given.push(blob), 'data:,'); HTMLAnchorElement.prototype.click = () => {};
+    for (const id of ['csv', 'png']) document.getElementById(id).click()`);
+  expect(await other.until('given.length === 2', 10), 'buttons give a picture and a table');
+  const lines = await other.value(`given.find((blob) => blob.type === 'text/csv').text().then((csv) => csv.trim().split('\\n').length)`);
+  expect(lines === 1 + (await other.value('meshlodeViewer.asset.clusters.length')), `the table has ${lines - 1} clusters`);
+  expect((await other.value('given.find((blob) => blob.type === "image/png").size')) > 5000, 'the picture is one');
+  const odd = await browser.open(`${url}#show=textured&px=1e9&cam=NaN,1&mesh=0.5&cluster=-1&cut=x&error=9999&theme=<b>`, { width: 800, height: 600, isDark: false });
+  expect((await odd.until(isOver)) && !(await odd.value(hasFailed)) && (await odd.value(drawnShare)) > 0.05, 'an address of nonsense: the first picture');
+  for (const one of [tab, other, odd]) {
+    expect(one.said.length === 0, `addresses: nothing on the console ${one.said.join('; ')}`);
+    await one.close();
+  }
 }
 
 /** A page with fewer pages than the asset has. */
@@ -272,6 +302,7 @@ try {
   }
   await look(browser, page(join(data, 'city.glb'), 'city'), 'city', { width: 1280, height: 900, isDark: false });
   await listen(browser, rock);
+  await lookAtAddress(browser, rock);
   await lookWithoutWebGl(browser, rock);
   const dragon = join(process.env.MESHLODE_MODELS ?? '', 'dragon.glb');
   if (process.env.MESHLODE_MODELS && existsSync(dragon)) {

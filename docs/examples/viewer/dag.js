@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// What the page knows of the DAG beyond the tables: who was made from whom, cuts of the pages that are there, and the measures
+// What a viewer knows of the DAG beyond the tables: who was made from whom, cuts of the pages that are there, and the measures
 // that graph and mesh show. Nothing here draws.
-import { NONE, INFINITE_ERROR, STUCK_REASONS } from './index.js';
+import { NONE, INFINITE_ERROR, STUCK_REASONS } from 'meshlode';
 
 /** For each group the clusters that were made from it. */
 export function clustersMadeFrom(asset) {
@@ -79,6 +79,8 @@ export function measureOf(asset, cap, measure, c) {
     const reason = stuckReason(asset, c);
     return reason === null ? { share: 0.15, hue: null, mark: '' } : { share: 1, hue: 25, mark: reason[0].toUpperCase() };
   }
+  // 13 levels, which a million triangles have, before a hue comes again.
+  if (measure === 'level') return { share: 1, hue: (210 + 332 * cluster.level) % 360, mark: '' };
   if (measure === 'page') {
     const page = asset.groups[cluster.coarserGroup].page;
     return { share: page % 2 === 0 ? 1 : 0.7, hue: (page * 137.508) % 360, mark: '' };
@@ -90,6 +92,7 @@ export const LEGENDS = {
   fill: 'Height and depth of colour: how full a cluster is of triangles.',
   ratio: 'Height and depth of colour: error of the coarser group over that of the own one, from 1 to 64 times. Roots and level 0 have none.',
   stuck: 'Full height and a letter: its group could not be simplified. L locked, F flips, S seams, C components, T too small or topology, B locked border.',
+  level: 'Hue: the level, blue for the finest; then green, yellow, red and violet.',
   page: 'Hue: the page; pages with odd numbers are lower.',
   cluster: 'Each cluster has a hue of its own.',
 };

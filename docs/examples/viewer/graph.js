@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The DAG of one mesh on a canvas: a row a level, the coarsest on top; groups as frames, clusters as cells in the order of what
 // they became, so that what is below a cluster is what it was made from, as far as a DAG allows it. Zoomed sideways.
-import { NONE } from './index.js';
+import { NONE } from 'meshlode';
 import { LEGENDS, colourOf, measureOf } from './dag.js';
 
 const MIN_SPAN = 1e-5; // of the row's width
@@ -53,9 +53,10 @@ export class Graph {
   #draw() {
     if (!this.rows) return;
     const { canvas, theme } = this;
-    const scale = window.devicePixelRatio || 1;
-    const width = Math.max(1, Math.round(canvas.clientWidth * scale));
-    const height = Math.max(1, Math.round(canvas.clientHeight * scale));
+    const ratio = window.devicePixelRatio || 1;
+    const scale = ratio * letterScale(canvas);
+    const width = Math.max(1, Math.round(canvas.clientWidth * ratio));
+    const height = Math.max(1, Math.round(canvas.clientHeight * ratio));
     if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, { width, height });
     this.start = Math.max(0, Math.min(1 - this.span, this.start));
     const ink = canvas.getContext('2d');
@@ -137,7 +138,7 @@ export class Graph {
   /** Rows' x and level of a pointer. */
   #at(event) {
     const box = this.canvas.getBoundingClientRect();
-    const left = 34;
+    const left = 34 * letterScale(this.canvas);
     const x = this.start + ((event.clientX - box.left - left) / Math.max(1, box.width - left)) * this.span;
     const level = this.rows.length - 1 - Math.floor(((event.clientY - box.top) / box.height) * this.rows.length);
     return { x, level };
@@ -204,6 +205,9 @@ export class Graph {
     return cluster.ownGroup === NONE ? NONE : this.asset.groups[cluster.ownGroup].firstCluster;
   }
 }
+
+/** Against letters of 15 pixels: larger screens have larger ones. */
+const letterScale = (canvas) => parseFloat(getComputedStyle(canvas).fontSize) / 15 || 1;
 
 /** Rows by level: {groups, cells}, each with x and width in 0 … 1. */
 function layOut(asset, made, meshId) {
