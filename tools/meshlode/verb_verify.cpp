@@ -11,11 +11,9 @@
 #include "app/doctor/diagnosis.h"
 #include "app/report/read_meta.h"
 #include "base/file.h"
-#include "base/json_writer.h"
 #include "bulk.h"
 #include "explain.h"
 #include "file_kind.h"
-#include "findings.h"
 #include "gpu_checks.h"
 #include "judge/validate/rules.h"
 #include "judge/verify/verify.h"
@@ -28,6 +26,7 @@
 #include "source_scene.h"
 #include "terminal.h"
 #include "verb.h"
+#include "verify_json.h"
 
 namespace meshlode::cli {
 
@@ -38,6 +37,10 @@ constexpr ColoredWord kStatusWords[] = {{"ok", Color::kGreen},
                                         {"skipped", Color::kYellow},
                                         {"verified:", Color::kGreen},
                                         {"NOT", Color::kRed}};
+
+/// A second for the dragon, and so many that a rule which is wrong for some does not pass by luck.
+constexpr std::uint32_t kResidencies = 5000;
+constexpr std::uint32_t kMostResidencies = 10'000'000;  ///< a camera for 50 keeps what it found until the end
 
 std::string describe(const judge::VerifyReport& report, bool quiet) {
   std::string text;
@@ -64,98 +67,6 @@ std::string describe(const judge::VerifyReport& report, bool quiet) {
     text += report.finding_count == 0 ? "verified: nothing found\n"
                                       : "NOT verified: " + app::counted(report.finding_count, "findings") + "\n";
   return text;
-}
-
-void write_brackets(JsonWriter& json, std::span<const judge::CutBracket> brackets) {
-  json.key("deviations");
-  json.begin_array();
-  for (const judge::CutBracket& cut : brackets) {
-    json.begin_object();
-    json.field("mesh", cut.mesh.value);
-    json.field("error", cut.threshold);
-    json.field("stored", cut.stored);
-    json.field("lower", cut.lower);
-    json.field("upper", cut.upper);
-    json.field("verdict", cut.is_above(1.0) ? "above" : cut.is_undecided() ? "undecided" : "within");
-    json.field("undecided_pieces", cut.undecided);
-    json.end_object();
-  }
-  json.end_array();
-}
-
-void write_surfaces(JsonWriter& json, const judge::IdTotals& totals) {
-  json.key("surfaces");
-  json.begin_object();
-  json.field("pictures", totals.pictures);
-  json.field("pixels", totals.all.pixels);
-  json.field("astray", totals.all.astray);
-  json.field("farthest_px", totals.all.farthest_px);
-  json.field("worst_share", totals.worst.share());
-  json.field("worst_picture", totals.worst_picture);
-  json.field("beyond_limit", totals.beyond_limit);
-  json.end_object();
-}
-
-std::string to_json(const std::string& path, const std::string& source, const judge::VerifyOptions& options,
-                    const judge::VerifyReport& report) {
-  JsonWriter json;
-  json.begin_object();
-  json.field("file", path);
-  json.field("source", source);
-  json.field("quick", options.is_quick);
-  json.field("uniform_cuts", options.uniform_cuts);
-  json.field("cameras", options.cameras);
-  json.key("deviation_cuts");
-  if (options.deviation_cuts == judge::kAllCuts && !options.is_quick) {
-    json.value("all");
-  } else {
-    json.value(std::uint64_t{options.is_quick ? 1 : options.deviation_cuts});
-  }
-  json.field("deviation_budget", options.deviation_budget);
-  json.field("deviation_samples", options.deviation_samples);
-  json.field("seed", options.seed);
-  json.field("verified", report.finding_count == 0);
-  json.field("finding_count", report.finding_count);
-  json.key("checks");
-  json.begin_array();
-  for (const judge::VerifyReport::Check& check : report.checks) {
-    json.begin_object();
-    json.field("invariant", check.invariant);
-    json.field("what", check.what);
-    json.field("items", check.items);
-    json.field("failures", check.failures);
-    json.field("skipped", check.skipped);
-    json.end_object();
-  }
-  json.end_array();
-  if (report.crowded_edges) {
-    json.key("crowded_edges");
-    json.begin_object();
-    json.field("cuts", report.crowded_edges->cuts);
-    json.field("level0", report.crowded_edges->level0);
-    json.field("most", report.crowded_edges->most);
-    json.field("keeps_topology", report.crowded_edges->keeps_topology);
-    json.end_object();
-  }
-  if (!report.brackets.empty()) write_brackets(json, report.brackets);
-  if (report.surfaces) write_surfaces(json, *report.surfaces);
-  if (!report.promises.empty()) {
-    json.key("promises");
-    json.begin_array();
-    for (const judge::VerifyReport::PromisedCuts& promised : report.promises) {
-      json.begin_object();
-      json.field("promise", promised.promise);
-      json.field("cuts", promised.cuts);
-      json.field("exceeded", promised.exceeded);
-      json.field("median", promised.median);
-      json.field("largest", promised.largest);
-      json.end_object();
-    }
-    json.end_array();
-  }
-  write_findings(json, report.findings);
-  json.end_object();
-  return json.text();
 }
 
 /// Clusters decoded, and a cut that draws each in every instance: what verify keeps at once.
@@ -223,8 +134,13 @@ FileOutcome verify_file(const BulkInput& input, const VerifyCommand& command) {
   if (!input.source.empty()) source_options.path = input.source;
   judge::VerifyOptions options = command.checks;
   const GpuOptions& gpu_options = command.gpu;
-  const Status given = check_source_options("verify", path, source_options);
-  if (!given) return fail(given.error());
+  const bool is_alone = options.residencies > 0 && source_options.path.empty();  // what --stream checks needs no source
+  if (is_alone && gpu_options.is_on)
+    return fail({ErrorCode::kUsage, "--gpu", "compares with the source: give --source"});
+  if (!is_alone) {
+    const Status given = check_source_options("verify", path, source_options);
+    if (!given) return fail(given.error());
+  }
   Result<run::Asset> asset = open_asset(path, command.max_decoded);
   if (!asset) return fail(asset.error());
   if (const auto id = asset->file_id()) output_files().keep(*id);
@@ -240,22 +156,28 @@ FileOutcome verify_file(const BulkInput& input, const VerifyCommand& command) {
   }
   if (gpu_options.is_explained) out.notes = describe_recorded_plan(*asset);
   if (gpu_options.is_on) std::fputs(std::exchange(out.notes, {}).c_str(), stderr);  // before what the device says
-  const Result<scene::Scene> source = import_source(*asset, source_options, command.max_decoded);
-  if (!source) return fail(source.error());
-  const Result<MappedFile> file = MappedFile::open(source_options.path);
-  if (file) options.source_bytes = file->bytes();
-  if (options.is_quick) {  // as it is reported
+  if (options.is_quick || is_alone) {                                               // as it is reported
     options.uniform_cuts = options.cameras = 0;
     options.deviation_budget = std::min(options.deviation_budget, judge::kQuickDeviationBudget);
   }
-  const std::optional<std::string> other = describe_other_source(*asset, *source, source_options);
-  judge::VerifyReport report = other ? report_other_source(*other) : judge::verify_asset(*asset, *source, options);
-  if (gpu_options.is_on && !other) {
-    const Status judged = verify_with_gpu(*asset, *source, gpu_options, report);
-    if (!judged) return fail(judged.error());
+  judge::VerifyReport report;
+  if (is_alone) {
+    options.deviation_cuts = 0;
+    report = judge::verify_streaming(*asset, options);
+  } else {
+    const Result<scene::Scene> source = import_source(*asset, source_options, command.max_decoded);
+    if (!source) return fail(source.error());
+    const Result<MappedFile> file = MappedFile::open(source_options.path);
+    if (file) options.source_bytes = file->bytes();
+    const std::optional<std::string> other = describe_other_source(*asset, *source, source_options);
+    report = other ? report_other_source(*other) : judge::verify_asset(*asset, *source, options);
+    if (gpu_options.is_on && !other) {
+      const Status judged = verify_with_gpu(*asset, *source, gpu_options, report);
+      if (!judged) return fail(judged.error());
+    }
   }
   const OutputOptions& output = command.output;
-  out.text = output.json() ? to_json(path, source_options.path, options, report)
+  out.text = output.json() ? verify_json(path, source_options.path, options, report)
                            : with_colored_words(describe(report, output.quiet), kStatusWords);
   describe_row(report, out);
   out.exit_code = report.finding_count == 0 ? 0 : static_cast<int>(ErrorCode::kCheckFailed);
@@ -265,6 +187,8 @@ FileOutcome verify_file(const BulkInput& input, const VerifyCommand& command) {
 int run_verify(const Verb& verb, std::span<char* const> args) {
   VerifyCommand command;
   BulkWords bulk;
+  bool streams = false;
+  std::uint32_t residencies = kResidencies;
   std::string deviation_cuts = "12";
   std::string max_decoded_text = kDefaultMaxDecodedText;
   SourceOptions& source_options = command.source;
@@ -289,7 +213,10 @@ int run_verify(const Verb& verb, std::span<char* const> args) {
   parser.add_value("--samples", options.deviation_samples,
                    "area-uniform samples per direction of such a cut, for the promises texels and appearance, 1 to "
                    "100000000");
-  parser.add_value("--seed", options.seed, "seed of the random cameras");
+  parser.add_value("--seed", options.seed, "seed of the random cameras and residencies");
+  parser.add_flag("--stream", streams,
+                  "also select from resident pages alone; without --source nothing else but structure is checked");
+  parser.add_value("--residencies", residencies, "random residencies of the pages for --stream, 1 to 10000000");
   parser.group("Output");
   add_output_options(parser, output);
   parser.add_flag("-v,--explain", gpu_options.is_explained,
@@ -313,6 +240,13 @@ int run_verify(const Verb& verb, std::span<char* const> args) {
     return print_error(
         {ErrorCode::kUsage, "--promise", "chooses what --gpu draws: uniform cuts are measured by all promises"});
   }
+  if (residencies < 1 || residencies > kMostResidencies) {
+    return print_error({ErrorCode::kUsage, "--residencies", "a number from 1 to 10000000"});
+  }
+  if (residencies != kResidencies && !streams) {
+    return print_error({ErrorCode::kUsage, "--residencies", "is of --stream"});
+  }
+  if (streams) options.residencies = residencies;
   if (deviation_cuts == "all") {
     options.deviation_cuts = judge::kAllCuts;
   } else if (const auto read = std::from_chars(deviation_cuts.data(), deviation_cuts.data() + deviation_cuts.size(),
@@ -337,7 +271,9 @@ int run_verify(const Verb& verb, std::span<char* const> args) {
   const bool has_all_sources = std::all_of(inputs->files.begin(), inputs->files.end(), [](const BulkInput& input) {
     return !input.source.empty() || !input.error.empty();
   });
-  if (!has_all_sources && !command.is_source_folder && (source_options.path.empty() || inputs->files.size() > 1)) {
+  const bool needs_sources = !streams || !source_options.path.empty();
+  if (needs_sources && !has_all_sources && !command.is_source_folder &&
+      (source_options.path.empty() || inputs->files.size() > 1)) {
     return print_error({ErrorCode::kUsage, "--source",
                         "of several assets name the folder of their scenes, or give "
                         "--manifest"});
@@ -358,6 +294,7 @@ const Verb kVerifyVerb{"verify", "compare an asset with the scene it was built f
                        "Checks that every source triangle is there, that no cut has a crack, that selection by "
                        "hierarchy and by the flat rule agree, and that cuts deviate from the source by no more than "
                        "the asset states. It shares no code with the builder.\n\n"
+                       "With --stream random pages are resident, and selection must draw a closed cut of these.\n\n"
                        "With --gpu a Vulkan device decodes, selects and draws the same, and must agree bit for bit.\n\n"
                        "Of several assets each has a row; their scenes come from the manifest of their build, or lie "
                        "below the folder --source as the assets lie below theirs.",
@@ -365,6 +302,7 @@ const Verb kVerifyVerb{"verify", "compare an asset with the scene it was built f
                        "  meshlode verify scene.lode --source scene.glb --quick\n"
                        "  meshlode verify scene.lode --source scene.glb --cuts 1000 --cameras 500 --seed 7\n"
                        "  meshlode verify scene.lode --source scene.glb --gpu --orbits 50\n"
+                       "  meshlode verify scene.lode --stream\n"
                        "  meshlode verify --manifest out/manifest.json --quick --junit verify.xml",
                        run_verify};
 

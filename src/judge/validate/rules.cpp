@@ -154,6 +154,9 @@ constexpr std::array kRules{
     RULE(V211, "I7",
          "from a camera each pixel of the source's picture and of the cut's shows a mesh and material that the other "
          "picture has within the allowed pixels and 1.5, but for 1% of them"),
+    RULE(V212, "I5",
+         "`--stream`: whichever pages are resident, the cut is closed and drawn from them, as fine as they allow, with "
+         "all of them the rule's, off by no more than it shows, and the pages that a finer one needs are requested"),
     // verify --gpu
     RULE(V401, "I9", "`--gpu`: the device decodes every cluster to the CPU's integers"),
     RULE(V402, "I8", "`--gpu`: the device's traversal selects what the flat rule selects"),

@@ -36,6 +36,7 @@ enum class Rule : std::uint8_t {
   kV101, kV102, kV103, kV104, kV105, kV106, kV107, kV108, kV109, kV110, kV111, kV112, kV113, kV114, kV115,
   // verify: cuts
   kV201, kV202, kV203, kV204, kV205, kV206, kV207, kV208, kV209, kV210, kV211,
+  kV212,
   // verify --gpu
   kV401, kV402, kV403, kV404, kV405, kV406, kV409,  // V407 and V408 are retired, and no other rule gets their ids
 };

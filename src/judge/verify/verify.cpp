@@ -42,6 +42,19 @@ class Report {
     std::vector<Finding> findings = log.take_findings();
     std::move(findings.begin(), findings.end(), std::back_inserter(out.findings));
   }
+  /// Nothing behind this can be looked at.
+  void stop(std::string invariant, const Error& error) {
+    add_check(std::move(invariant), "not reached: " + error.message(), 0, 1);
+    if (out.finding_count > 0) return;
+    out.findings.push_back(make_finding(Rule::kL204, error.where, error.detail));
+    out.finding_count = 1;
+  }
+  VerifyReport finish() {
+    std::stable_sort(
+        out.checks.begin(), out.checks.end(),
+        [](const VerifyReport::Check& a, const VerifyReport::Check& b) { return a.invariant < b.invariant; });
+    return std::move(out);
+  }
   VerifyReport out;
 };
 
@@ -223,6 +236,25 @@ void add_cuts(const run::Asset& asset, std::span<const run::DecodedCluster> clus
   report.take(camera_log);
 }
 
+void add_resident_cuts(const run::Asset& asset, std::span<const run::DecodedCluster> clusters,
+                       const VerifyOptions& options, Report& report) {
+  std::vector<MeshJudge> judges;
+  for (std::size_t m = 0; m < asset.meshes().size(); ++m) judges.push_back(make_mesh_judge(asset, MeshId(m), clusters));
+  RuleLog log;
+  const ResidentTotals totals = check_resident_cuts(asset, judges, options.residencies, options.seed, log);
+  report.add_check("I5", describe(totals), totals.residencies, failures_of(log, {Rule::kV212}));
+  report.take(log);
+  RuleLog error_log;
+  const ShownErrors errors = check_shown_errors(asset, clusters, totals.samples, error_log);
+  if (errors.cuts == 0) {
+    report.skip("I7", describe(errors));
+  } else {
+    report.add_check("I7", describe(errors), errors.cuts, failures_of(error_log, {Rule::kV212}));
+  }
+  report.take(error_log);
+  report.out.streaming = {totals, errors};
+}
+
 void add_coverage(const run::Asset& asset, const VerifyOptions& options, Report& report) {
   const std::uint32_t sizes = options.is_quick ? 1 : std::min(options.deviation_cuts, kCoverageSizes);
   RuleLog log;
@@ -336,6 +368,7 @@ VerifyReport verify_asset(const run::Asset& asset, const scene::Scene& whole, co
     } else {
       add_cuts(asset, *clusters, options, report);
     }
+    if (options.residencies > 0) add_resident_cuts(asset, *clusters, options, report);
     release(*clusters);  // cuts are decoded one by one
     give_back_freed_memory();
     add_deviations(asset, source, options, report);
@@ -343,16 +376,21 @@ VerifyReport verify_asset(const run::Asset& asset, const scene::Scene& whole, co
     add_coverage(asset, options, report);
     add_ids(asset, source, options, report);
   } else {
-    report.add_check("I1", "not reached: " + clusters.error().message(), 0, 1);
-    if (report.out.finding_count == 0) {
-      report.out.findings.push_back(make_finding(Rule::kL204, clusters.error().where, clusters.error().detail));
-      report.out.finding_count = 1;
-    }
+    report.stop("I1", clusters.error());
   }
-  std::stable_sort(
-      report.out.checks.begin(), report.out.checks.end(),
-      [](const VerifyReport::Check& a, const VerifyReport::Check& b) { return a.invariant < b.invariant; });
-  return std::move(report.out);
+  return report.finish();
+}
+
+VerifyReport verify_streaming(const run::Asset& asset, const VerifyOptions& options) {
+  Report report;
+  add_structure(asset, report);
+  report.skip("", "not checked: no source was given; the asset was not compared with it");
+  if (const Result<std::vector<run::DecodedCluster>> clusters = run::decode_all(asset)) {
+    add_resident_cuts(asset, *clusters, options, report);
+  } else {
+    report.stop("I5", clusters.error());
+  }
+  return report.finish();
 }
 
 }  // namespace meshlode::judge

@@ -13,6 +13,7 @@
 #include "judge/pictures/id_judge.h"
 #include "judge/validate/validate.h"
 #include "judge/verify/deviations.h"
+#include "judge/verify/resident_cuts.h"
 #include "run/read/asset.h"
 #include "scene/scene.h"
 
@@ -33,6 +34,8 @@ struct VerifyOptions {
   std::uint32_t deviation_budget = kDeviationBudget;
   /// Area-uniform samples each way of such a cut, beside all vertices, for what is promised besides positions.
   std::uint64_t deviation_samples = 200000;
+  /// Random residencies of pages that selection is tried with (V212); 0: none.
+  std::uint32_t residencies = 0;
   std::uint64_t seed = 1;
   /// The source's file as it lies there, for what its size says of it. Empty: that is not looked at.
   std::span<const std::uint8_t> source_bytes = {};
@@ -59,6 +62,11 @@ struct VerifyReport {
   std::optional<CrowdedEdges> crowded_edges;
   std::vector<CutBracket> brackets;  ///< V206
   std::optional<IdTotals> surfaces;  ///< V211, by the CPU; nothing where no picture was drawn
+  struct Streaming {
+    ResidentTotals residencies;
+    ShownErrors errors;
+  };
+  std::optional<Streaming> streaming;  ///< V212; nothing where no residency was tried
   /// What is promised besides positions, measured (V209); one for each promise that the asset has.
   struct PromisedCuts {
     std::string promise;         ///< "texels"
@@ -72,5 +80,7 @@ struct VerifyReport {
 
 [[nodiscard]] VerifyReport verify_asset(const run::Asset& asset, const scene::Scene& source,
                                         const VerifyOptions& options);
+/// Structure and V212, which need no source.
+[[nodiscard]] VerifyReport verify_streaming(const run::Asset& asset, const VerifyOptions& options);
 
 }  // namespace meshlode::judge
