@@ -76,6 +76,14 @@ std::string gpu_json(const GpuOptions& options, const judge::GpuVerifyReport& ve
   return json.text();
 }
 
+void add_check(const judge::GpuCheck& check, const std::string& device, judge::VerifyReport& report) {
+  const std::string invariant(judge::info_of(check.rule).invariant);
+  report.checks.push_back({invariant, device + ": " + check.what, check.items, check.failures, check.is_skipped});
+  if (check.failures == 0) return;
+  report.findings.push_back(judge::make_finding(check.rule, device, check.first));
+  ++report.finding_count;
+}
+
 }  // namespace
 
 Status verify_with_gpu(run::Asset& asset, const scene::Scene& source, const GpuOptions& options,
@@ -110,14 +118,18 @@ Status verify_with_gpu(run::Asset& asset, const scene::Scene& source, const GpuO
   if (!options.out_folder.empty()) {
     if (const Status written = write_text(report_path, gpu_json(options, *verified)); !written) return written;
   }
-  for (const judge::GpuCheck& check : verified->checks) {
-    const std::string invariant(judge::info_of(check.rule).invariant);
-    report.checks.push_back(
-        {invariant, verified->device.name + ": " + check.what, check.items, check.failures, check.is_skipped});
-    if (check.failures == 0) continue;
-    report.findings.push_back(judge::make_finding(check.rule, verified->device.name, check.first));
-    ++report.finding_count;
-  }
+  for (const judge::GpuCheck& check : verified->checks) add_check(check, verified->device.name, report);
+  return Ok{};
+}
+
+Status verify_streaming_with_gpu(const run::Asset& asset, const GpuOptions& options, judge::VerifyReport& report) {
+  judge::StreamFrameOptions judge;
+  judge.device.device = options.device;
+  judge.frames = options.frames;
+  judge.pixel_error = options.pixel_error;
+  judge.max_decoded = options.max_decoded;
+  TRY_LET(verified, judge::verify_streaming_on_gpu(asset, judge));
+  add_check(verified->check, verified->device.name, report);
   return Ok{};
 }
 

@@ -18,6 +18,7 @@ struct GpuOptions {
   bool is_explained = false;
   std::string device, path, out_folder, promise = "position";
   std::uint32_t orbits = 6;
+  std::uint32_t frames = 600;
   double pixel_error = 1.0;
   std::uint64_t max_decoded = 0;  ///< bytes of decoded images
 };
@@ -26,5 +27,9 @@ struct GpuOptions {
 /// `asset`: its promise is chosen. Errors: as of choose_promise() and judge::verify_on_gpu().
 [[nodiscard]] Status verify_with_gpu(run::Asset& asset, const scene::Scene& source, const GpuOptions& options,
                                      judge::VerifyReport& report);
+
+/// The same of streaming: frames drawn from a pool of pages. Errors: as of judge::verify_streaming_on_gpu().
+[[nodiscard]] Status verify_streaming_with_gpu(const run::Asset& asset, const GpuOptions& options,
+                                               judge::VerifyReport& report);
 
 }  // namespace meshlode::cli

@@ -40,6 +40,7 @@ constexpr ColoredWord kStatusWords[] = {{"ok", Color::kGreen},
 
 /// A second for the dragon, and so many that a rule which is wrong for some does not pass by luck.
 constexpr std::uint32_t kResidencies = 5000;
+constexpr std::uint32_t kMostFrames = 100'000;          ///< a day of lavapipe
 constexpr std::uint32_t kMostResidencies = 10'000'000;  ///< a camera for 50 keeps what it found until the end
 
 std::string describe(const judge::VerifyReport& report, bool quiet) {
@@ -135,8 +136,6 @@ FileOutcome verify_file(const BulkInput& input, const VerifyCommand& command) {
   judge::VerifyOptions options = command.checks;
   const GpuOptions& gpu_options = command.gpu;
   const bool is_alone = options.residencies > 0 && source_options.path.empty();  // what --stream checks needs no source
-  if (is_alone && gpu_options.is_on)
-    return fail({ErrorCode::kUsage, "--gpu", "compares with the source: give --source"});
   if (!is_alone) {
     const Status given = check_source_options("verify", path, source_options);
     if (!given) return fail(given.error());
@@ -175,6 +174,10 @@ FileOutcome verify_file(const BulkInput& input, const VerifyCommand& command) {
       const Status judged = verify_with_gpu(*asset, *source, gpu_options, report);
       if (!judged) return fail(judged.error());
     }
+  }
+  if (gpu_options.is_on && options.residencies > 0) {
+    const Status judged = verify_streaming_with_gpu(*asset, gpu_options, report);
+    if (!judged) return fail(judged.error());
   }
   const OutputOptions& output = command.output;
   out.text = output.json() ? verify_json(path, source_options.path, options, report)
@@ -230,6 +233,8 @@ int run_verify(const Verb& verb, std::span<char* const> args) {
                    "cameras to judge as well, one 'ex ey ez tx ty tz [fovy [near]]' per line (default: none)");
   parser.add_value("--out-dir FOLDER", gpu_options.out_folder,
                    "existing folder for heat maps of the worst cameras and the report gpu.json (default: none)");
+  parser.add_value("--frames", gpu_options.frames,
+                   "frames of --stream --gpu, which draws from a pool of a quarter of the pages, 1 to 100000");
   add_pixel_error_option(parser, gpu_options.pixel_error);
   add_promise_option(parser, gpu_options.promise);
   parser.group("Resources");
@@ -245,6 +250,12 @@ int run_verify(const Verb& verb, std::span<char* const> args) {
   }
   if (residencies != kResidencies && !streams) {
     return print_error({ErrorCode::kUsage, "--residencies", "is of --stream"});
+  }
+  if (gpu_options.frames < 1 || gpu_options.frames > kMostFrames) {
+    return print_error({ErrorCode::kUsage, "--frames", "a number from 1 to 100000"});
+  }
+  if (gpu_options.frames != GpuOptions().frames && !(streams && gpu_options.is_on)) {
+    return print_error({ErrorCode::kUsage, "--frames", "are of --stream --gpu"});
   }
   if (streams) options.residencies = residencies;
   if (deviation_cuts == "all") {
@@ -290,20 +301,22 @@ int run_verify(const Verb& verb, std::span<char* const> args) {
 
 }  // namespace
 
-const Verb kVerifyVerb{"verify", "compare an asset with the scene it was built from",
-                       "Checks that every source triangle is there, that no cut has a crack, that selection by "
-                       "hierarchy and by the flat rule agree, and that cuts deviate from the source by no more than "
-                       "the asset states. It shares no code with the builder.\n\n"
-                       "With --stream random pages are resident, and selection must draw a closed cut of these.\n\n"
-                       "With --gpu a Vulkan device decodes, selects and draws the same, and must agree bit for bit.\n\n"
-                       "Of several assets each has a row; their scenes come from the manifest of their build, or lie "
-                       "below the folder --source as the assets lie below theirs.",
-                       "meshlode verify scene.lode --source scene.glb\n"
-                       "  meshlode verify scene.lode --source scene.glb --quick\n"
-                       "  meshlode verify scene.lode --source scene.glb --cuts 1000 --cameras 500 --seed 7\n"
-                       "  meshlode verify scene.lode --source scene.glb --gpu --orbits 50\n"
-                       "  meshlode verify scene.lode --stream\n"
-                       "  meshlode verify --manifest out/manifest.json --quick --junit verify.xml",
-                       run_verify};
+const Verb kVerifyVerb{
+    "verify", "compare an asset with the scene it was built from",
+    "Checks that every source triangle is there, that no cut has a crack, that selection by "
+    "hierarchy and by the flat rule agree, and that cuts deviate from the source by no more than "
+    "the asset states. It shares no code with the builder.\n\n"
+    "With --stream random pages are resident, and selection must draw a closed cut of these.\n\n"
+    "With --gpu a Vulkan device decodes, selects and draws the same, and must agree bit for bit; with --stream too it "
+    "draws from a pool of pages that follows its requests.\n\n"
+    "Of several assets each has a row; their scenes come from the manifest of their build, or lie "
+    "below the folder --source as the assets lie below theirs.",
+    "meshlode verify scene.lode --source scene.glb\n"
+    "  meshlode verify scene.lode --source scene.glb --quick\n"
+    "  meshlode verify scene.lode --source scene.glb --cuts 1000 --cameras 500 --seed 7\n"
+    "  meshlode verify scene.lode --source scene.glb --gpu --orbits 50\n"
+    "  meshlode verify scene.lode --stream\n"
+    "  meshlode verify --manifest out/manifest.json --quick --junit verify.xml",
+    run_verify};
 
 }  // namespace meshlode::cli

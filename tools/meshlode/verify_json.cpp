@@ -58,7 +58,7 @@ void write_surfaces(JsonWriter& json, const judge::IdTotals& totals) {
 }  // namespace
 
 std::string verify_json(const std::string& path, const std::string& source, const judge::VerifyOptions& options,
-                    const judge::VerifyReport& report) {
+                        const judge::VerifyReport& report) {
   JsonWriter json;
   json.begin_object();
   json.field("file", path);

@@ -144,6 +144,20 @@ Result<Pages> upload_pages(Device& device, const run::Asset& asset) {
   return out;
 }
 
+/// Room for as many pages as there are slots, each for the largest of the asset.
+Result<Pages> make_slots(Device& device, const run::Asset& asset, GpuScene& scene) {
+  Pages out;
+  out.word.resize(asset.pages().size());
+  for (const format::PageRecord& page : asset.pages()) {
+    scene.slot_bytes = std::max(scene.slot_bytes, (page.bytes + 15) / 16 * 16);
+  }
+  out.bytes = std::uint64_t{scene.slot_count} * scene.slot_bytes;
+  if (out.bytes / 4 + 4 > 0xFFFFFFFFU) return Error{ErrorCode::kUnsupported, "pages", "a pool of more than 16 GiB"};
+  TRY_LET(buffer, device.make_buffer(out.bytes + 16, Memory::kDevice));
+  out.buffer = *buffer;
+  return out;
+}
+
 std::vector<GpuMeshUvs> mesh_uv_table(const run::Asset& asset) {
   std::vector<GpuMeshUvs> out;
   for (const format::MeshRecord& mesh : asset.meshes()) {
@@ -188,7 +202,7 @@ MaskTables mask_tables(const AlphaMasks& alpha) {
   return out;
 }
 
-std::vector<GpuGroup> group_table(const run::Asset& asset, const Errors& errors, const Pages& pages) {
+std::vector<GpuGroup> group_table(const run::Asset& asset, const Errors& errors) {
   std::vector<GpuGroup> out;
   for (const format::GroupRecord& group : asset.groups()) {
     GpuGroup g{};
@@ -197,7 +211,7 @@ std::vector<GpuGroup> group_table(const run::Asset& asset, const Errors& errors,
     g.error = errors.group[out.size()];
     g.first_cluster = group.first_cluster;
     g.cluster_count = group.cluster_count;
-    g.page_word = pages.word[group.page];
+    g.page = group.page;
     out.push_back(g);
   }
   return out;
@@ -219,7 +233,7 @@ ClusterTable cluster_table(const run::Asset& asset, const std::vector<GpuMesh>& 
     std::copy(sphere.center, sphere.center + 3, c.center);
     c.radius = sphere.radius;
     c.own_group = cluster.own_group;
-    c.page_word = groups[cluster.coarser_group].page_word;
+    c.page = groups[cluster.coarser_group].page;
     c.index = static_cast<std::uint32_t>(out.clusters.size()) - asset.pages()[group.page].first_cluster;
     c.index |= static_cast<std::uint32_t>(cluster.level) << 16u;
     scene.max_cluster_triangles = std::max(scene.max_cluster_triangles, cluster.triangle_count());
@@ -274,7 +288,7 @@ void find_needs(const run::Asset& asset, GpuScene& scene) {
 Status upload_tables(Device& device, const run::Asset& asset, std::span<const format::InstanceRecord> instances,
                      const Errors& errors, const Pages& pages, GpuScene& scene) {
   const std::vector<GpuMesh> meshes = mesh_table(asset, errors);
-  const std::vector<GpuGroup> groups = group_table(asset, errors, pages);
+  const std::vector<GpuGroup> groups = group_table(asset, errors);
   const ClusterTable clusters = cluster_table(asset, meshes, groups, scene);
   const MaskTables mask = mask_tables(*scene.alpha_masks);
   auto roots = device.make_buffer(clusters.root_words * 4, Memory::kDevice);  // filled by the renderer
@@ -290,6 +304,10 @@ Status upload_tables(Device& device, const run::Asset& asset, std::span<const fo
   if (const Status s = put(scene.nodes, node_table(asset, errors)); !s) return s;
   if (const Status s = put(scene.groups, groups); !s) return s;
   if (const Status s = put(scene.clusters, clusters.clusters); !s) return s;
+  if (const Status s = put(scene.page_words, pages.word); !s) return s;
+  const std::vector<std::uint32_t> ready((groups.size() + 31) / 32, scene.slot_count > 0 ? 0U : ~0U);
+  if (const Status s = put(scene.ready, ready); !s) return s;
+  if (const Status s = put(scene.priorities, std::vector<std::uint32_t>(pages.word.size())); !s) return s;
   if (const Status s = put(scene.materials, material_table(asset, *scene.alpha_masks)); !s) return s;
   if (const Status s = put(scene.mesh_uvs, mesh_uv_table(asset)); !s) return s;
   if (const Status s = put(scene.masks, mask.masks); !s) return s;
@@ -300,7 +318,7 @@ Status upload_tables(Device& device, const run::Asset& asset, std::span<const fo
 
 Result<GpuScene> upload_scene(Device& device, const run::Asset& asset,
                               std::span<const format::InstanceRecord> instances, const run::AttributeBounds& bounds,
-                              ImageBudget* images) {
+                              ImageBudget* images, std::uint32_t slots) {
   if (instances.empty()) instances = asset.instances();
   GpuScene out;
   out.bvh_depth = bvh_depth(asset);
@@ -310,7 +328,8 @@ Result<GpuScene> upload_scene(Device& device, const run::Asset& asset,
         std::to_string(out.bvh_depth) + " nodes deep, the GPU traversal has room for " + std::to_string(MAX_DEPTH)};
   }
   count_instances(asset, instances, out);
-  TRY_LET(pages, upload_pages(device, asset));
+  out.slot_count = slots;
+  TRY_LET(pages, slots > 0 ? make_slots(device, asset, out) : upload_pages(device, asset));
   out.pages = pages->buffer;
   out.page_bytes = pages->bytes;
 

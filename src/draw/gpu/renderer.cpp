@@ -141,6 +141,9 @@ void Renderer::set_addresses() {
   f.clusters = scene_.clusters.address();
   f.materials = scene_.materials.address();
   f.pages = scene_.pages.address();
+  f.page_words = scene_.page_words.address();
+  f.ready = scene_.ready.address();
+  f.priorities = scene_.priorities.address();
   f.roots = scene_.roots.address();
   f.mesh_uvs = scene_.mesh_uvs.address();
   f.masks = scene_.masks.address();
@@ -174,23 +177,24 @@ std::uint32_t Renderer::queue_parts() const {
   return options_.occlusion && options_.persistent_second && !options_.persistent ? 3 : 2;
 }
 bool Renderer::has_far_raster() const {
-  return has_far() && options_.far_raster;
+  return has_far() && options_.far_raster && !options_.streams;
 }
 
 Status Renderer::make_pipelines() {
   const bool has_hardware = options_.hardware != HardwarePath::kNone;
   const std::uint32_t frustum = options_.frustum ? 1 : 0, occlusion = options_.occlusion ? 1 : 0;
   const auto room = [](std::uint32_t count) { return std::max((count + 15) / 16 * 16, 16u); };
-  const std::array<std::uint32_t, 9> constants = {options_.double_sided ? 1u : 0u,
-                                                  frustum,
-                                                  occlusion,
-                                                  has_hardware ? 1u : 0u,
-                                                  options_.raster_group,
-                                                  room(scene_.max_cluster_triangles),
-                                                  room(scene_.max_cluster_vertices),
-                                                  0,
-                                                  options_.overdraw ? 1u : 0u};
-  std::array<std::uint32_t, 9> far_constants = constants;
+  const std::array<std::uint32_t, 10> constants = {options_.double_sided ? 1u : 0u,
+                                                   frustum,
+                                                   occlusion,
+                                                   has_hardware ? 1u : 0u,
+                                                   options_.raster_group,
+                                                   room(scene_.max_cluster_triangles),
+                                                   room(scene_.max_cluster_vertices),
+                                                   0,
+                                                   options_.overdraw ? 1u : 0u,
+                                                   options_.streams ? 1u : 0u};
+  std::array<std::uint32_t, 10> far_constants = constants;
   far_constants[3] = has_far() ? 1 : 0;
   far_constants[4] = options_.far_lanes;
   far_constants[5] = has_far_raster() ? 1 : 0;
@@ -236,6 +240,7 @@ void Renderer::record_begin(Commands& list) {
   list.copy(upload_, 0, frame_block_, 0, sizeof(GpuFrame));
   list.copy(upload_, sizeof(GpuFrame), counters_block_, 0, sizeof(GpuCounters));
   list.fill(pixels_, 0, pixels_.bytes(), 0);
+  if (options_.streams) list.fill(scene_.priorities, 0, scene_.priorities.bytes(), 0);
   if (options_.overdraw) list.fill(overdraw_, 0, overdraw_.bytes(), 0);
   list.barrier();
   list.stamp("clear");

@@ -38,7 +38,8 @@ struct RendererOptions {
   bool far_raster = true;         ///< and is drawn by a rasterizer of its own where it has a few pixels
   std::uint32_t raster_group = 128;  ///< invocations of the software rasterizer's workgroup: 32, 64 or 128
   std::uint32_t far_lanes = 32;      ///< invocations a far root is drawn by: 16, 32, 64 or 128
-  bool overdraw = false;             ///< count how often each pixel is drawn, for that view
+  bool streams = false;   ///< the scene has a pool of pages (page_pool.h); far roots are not drawn from decoded ones
+  bool overdraw = false;  ///< count how often each pixel is drawn, for that view
   HardwarePath hardware = HardwarePath::kNone;
   float hardware_pixels = 256.0F;      ///< a cluster wider than this on the screen is the hardware's; 0: all are
   std::uint32_t max_items = 1u << 22;  ///< of each list, at most; lists are no longer than the scene can fill

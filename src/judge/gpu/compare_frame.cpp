@@ -59,6 +59,7 @@ Result<Comparison> compare_decode(draw::Device& device, const draw::GpuScene& sc
   frame.meshes = scene.meshes.address();
   frame.clusters = scene.clusters.address();
   frame.pages = scene.pages.address();
+  frame.page_words = scene.page_words.address();
   frame.retry_clusters = entries_buffer->address();
   frame.clipped = output->address();
   TRY(device.upload(*frame_buffer, draw::bytes_of(frame)));
@@ -105,6 +106,29 @@ Result<Comparison> compare_decode(draw::Device& device, const draw::GpuScene& sc
   return out;
 }
 
+Status compare_pixels(draw::Renderer& renderer, const run::Asset& asset, const run::Camera& camera,
+                      std::span<const run::ClusterInstance> cut, std::span<const run::ClusterInstance> expected,
+                      Comparison& out) {
+  TRY(renderer.redraw_in_order());
+  TRY_LET(pixels, renderer.read_pixels());
+  TRY_LET(reference, draw::draw_cut(asset, expected, camera, *renderer.scene().alpha_masks));
+  out.items += reference->pixel_count();
+  const auto key_at = [](const draw::VisibilityBuffer& buffer, std::span<const run::ClusterInstance> items,
+                         std::size_t i) {
+    return buffer.item[i] < items.size() ? items[buffer.item[i]] : run::ClusterInstance{};
+  };
+  for (std::size_t i = 0; i < reference->pixel_count(); ++i) {
+    const run::ClusterInstance want = key_at(*reference, expected, i), got = key_at(*pixels, cut, i);
+    if (want == got && reference->depth[i] == pixels->depth[i] && reference->triangle[i] == pixels->triangle[i])
+      continue;
+    note(out, "pixel " + std::to_string(i % camera.width) + "," + std::to_string(i / camera.width) + ": GPU " +
+                  name_of(got) + " triangle " + std::to_string(pixels->triangle[i]) + " depth " +
+                  std::to_string(pixels->depth[i]) + ", CPU " + name_of(want) + " triangle " +
+                  std::to_string(reference->triangle[i]) + " depth " + std::to_string(reference->depth[i]));
+  }
+  return Ok{};
+}
+
 Result<CutComparison> compare_frame(draw::Renderer& renderer, const run::Asset& asset, const run::Camera& camera,
                                     double pixel_error, const run::AttributeBounds& bounds) {
   CutComparison out;
@@ -125,23 +149,7 @@ Result<CutComparison> compare_frame(draw::Renderer& renderer, const run::Asset& 
   if (std::adjacent_find(cut->begin(), cut->end()) != cut->end()) note(out.cut, "a cluster is drawn twice");
   if (out.frame.overflow != 0) note(out.cut, "overflow of " + draw::describe_overflow(out.frame.overflow));
 
-  TRY(renderer.redraw_in_order());
-  TRY_LET(pixels, renderer.read_pixels());
-  TRY_LET(reference, draw::draw_cut(asset, expected, camera, *renderer.scene().alpha_masks));
-  out.pixels.items = reference->pixel_count();
-  const auto key_at = [](const draw::VisibilityBuffer& buffer, std::span<const run::ClusterInstance> items,
-                         std::size_t i) {
-    return buffer.item[i] < items.size() ? items[buffer.item[i]] : run::ClusterInstance{};
-  };
-  for (std::size_t i = 0; i < reference->pixel_count(); ++i) {
-    const run::ClusterInstance want = key_at(*reference, expected, i), got = key_at(*pixels, *cut, i);
-    if (want == got && reference->depth[i] == pixels->depth[i] && reference->triangle[i] == pixels->triangle[i])
-      continue;
-    note(out.pixels, "pixel " + std::to_string(i % camera.width) + "," + std::to_string(i / camera.width) + ": GPU " +
-                         name_of(got) + " triangle " + std::to_string(pixels->triangle[i]) + " depth " +
-                         std::to_string(pixels->depth[i]) + ", CPU " + name_of(want) + " triangle " +
-                         std::to_string(reference->triangle[i]) + " depth " + std::to_string(reference->depth[i]));
-  }
+  TRY(compare_pixels(renderer, asset, camera, *cut, expected, out.pixels));
   return out;
 }
 

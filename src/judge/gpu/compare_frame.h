@@ -40,6 +40,11 @@ struct CutComparison {
                                                   const run::Camera& camera, double pixel_error,
                                                   const run::AttributeBounds& bounds = {});
 
+/// Adds what differs between the last frame of `renderer`, whose cut was `cut`, and the CPU's picture of `expected`.
+[[nodiscard]] Status compare_pixels(draw::Renderer& renderer, const run::Asset& asset, const run::Camera& camera,
+                                    std::span<const run::ClusterInstance> cut,
+                                    std::span<const run::ClusterInstance> expected, Comparison& out);
+
 struct HardwareComparison {
   bool is_same_cut = false;  ///< as the flat rule's
   PictureDistance picture;   ///< from draw_cut()'s of that

@@ -69,4 +69,26 @@ struct GpuVerifyReport {
 [[nodiscard]] Result<GpuVerifyReport> verify_on_gpu(const run::Asset& asset, const scene::Scene& source,
                                                     const GpuVerifyOptions& options);
 
+struct StreamFrameOptions {
+  draw::DeviceOptions device;
+  std::uint32_t frames = 600;  ///< along a spiral around the scene, from far to close
+  double pixel_error = 1.0;    ///< of a picture of 1080 lines, so that as many pages are wanted as there
+  double pool_share = 0.25;    ///< slots over pages, at least those of the roots
+  /// Small: each frame is drawn by the CPU too.
+  PictureSize size = {160, 120};
+  std::uint32_t loads_per_frame = 2;  ///< so that frames lack pages
+  std::uint64_t max_decoded = run::kDefaultMaxDecoded;
+};
+
+struct StreamFramesReport {
+  draw::DeviceInfo device;
+  GpuCheck check{Rule::kV410, {}};  ///< items: frames; failures: frames with a difference
+  std::uint32_t frames = 0, slots = 0, pages = 0;
+  std::uint64_t loads = 0, incomplete = 0;  ///< pages; frames that lacked a page
+};
+/// Draws from a pool of pages that follows the device's requests, and holds every frame against ResidentSelector with
+/// the same pages and against the CPU's picture. Errors: as verify_on_gpu().
+[[nodiscard]] Result<StreamFramesReport> verify_streaming_on_gpu(const run::Asset& asset,
+                                                                 const StreamFrameOptions& options);
+
 }  // namespace meshlode::judge

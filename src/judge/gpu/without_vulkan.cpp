@@ -8,4 +8,8 @@ Result<GpuVerifyReport> verify_on_gpu(const run::Asset&, const scene::Scene&, co
   return draw::Device::open(options.device).error();
 }
 
+Result<StreamFramesReport> verify_streaming_on_gpu(const run::Asset&, const StreamFrameOptions& options) {
+  return draw::Device::open(options.device).error();
+}
+
 }  // namespace meshlode::judge

@@ -167,6 +167,8 @@ constexpr std::array kRules{
          "by more than the allowed pixels (measured: within 5%); with `--promise` UVs or normals counted as lengths"),
     RULE(V406, "I6", "`--gpu`: no background is seen through the cut of closed meshes"),
     RULE(V409, "I9", "`--gpu`: hardware raster is held within a stated distance of the CPU's coverage and depth"),
+    RULE(V410, "I9",
+         "`--stream --gpu`: from a pool of pages the device selects, requests and draws what the CPU does, each frame"),
 };
 
 #undef RULE
@@ -179,7 +181,7 @@ constexpr bool is_each_in_its_row() {
   for (std::size_t i = 0; i < kRules.size(); ++i) {
     if (index_of(kRules[i].rule) != i || (i > 0 && kRules[i].id <= kRules[i - 1].id)) return false;
   }
-  return kRules.size() == index_of(Rule::kV409) + 1;
+  return kRules.size() == index_of(Rule::kV410) + 1;
 }
 static_assert(is_each_in_its_row(), "the table has the rules of enum Rule, in its order");
 

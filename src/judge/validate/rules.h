@@ -38,7 +38,7 @@ enum class Rule : std::uint8_t {
   kV201, kV202, kV203, kV204, kV205, kV206, kV207, kV208, kV209, kV210, kV211,
   kV212,
   // verify --gpu
-  kV401, kV402, kV403, kV404, kV405, kV406, kV409,  // V407 and V408 are retired, and no other rule gets their ids
+  kV401, kV402, kV403, kV404, kV405, kV406, kV409, kV410,  // V407 and V408 are retired, and no other rule gets their ids
 };
 // clang-format on
 

@@ -96,7 +96,8 @@ class CameraCheck {
   }
 
  private:
-  ResidentCut select(const run::SelectTables& tables, const Residency& residency, const run::Frustum* frustum = nullptr) {
+  ResidentCut select(const run::SelectTables& tables, const Residency& residency,
+                     const run::Frustum* frustum = nullptr) {
     ResidentCut cut = selection_(tables, {view_.camera, view_.pixel_error, residency.words, frustum});
     out_.totals.requests += cut.requests.size();
     return cut;
@@ -169,7 +170,8 @@ void CameraCheck::check_scene() {
   const ResidentCut cut = select(tables_, residency), culled = select(tables_, residency, &frustum);
   out_.totals.others += 2;
   const std::string where = "all instances";
-  if (!std::is_sorted(cut.items.begin(), cut.items.end()) || !std::is_sorted(culled.items.begin(), culled.items.end())) {
+  if (!std::is_sorted(cut.items.begin(), cut.items.end()) ||
+      !std::is_sorted(culled.items.begin(), culled.items.end())) {
     add(where, "what is drawn is not ascending");
     return;
   }
@@ -210,8 +212,7 @@ std::string CameraCheck::find_cull_fault(std::span<const run::ClusterInstance> a
     const bool is_drawn = next != culled.end() && *next == item;
     if (is_drawn) ++next;
     const format::InstanceRecord& instance = asset_.instances()[item.instance.value];
-    const Side side =
-        side_of(frustum, instance, asset_.meshes()[instance.mesh], asset_.clusters()[item.cluster.value]);
+    const Side side = side_of(frustum, instance, asset_.meshes()[instance.mesh], asset_.clusters()[item.cluster.value]);
     if (side != (is_drawn ? Side::kOutside : Side::kInside)) continue;
     return place("instance", item.instance.value, "cluster", item.cluster.value) +
            (is_drawn ? " is outside the picture and drawn" : " is inside the picture and culled");
@@ -240,7 +241,7 @@ void CameraCheck::check_all_pages() {
 
 ResidentSelection make_resident_selection(const run::SelectTables& tables) {
   return [selector = std::make_shared<run::ResidentSelector>(tables)](const run::SelectTables& seen,
-                                                                     const run::ResidentQuery& query) {
+                                                                      const run::ResidentQuery& query) {
     ResidentCut cut;
     cut.items.resize(seen.clusters.size());  // a cut of one instance has less
     const std::size_t count = selector->select(seen, query, cut.items);

@@ -32,19 +32,19 @@ constexpr std::size_t kSampledCuts = 4;
 
 struct ResidentTotals {
   std::uint64_t cameras = 0;
-  std::uint64_t residencies = 0;  ///< of one instance, with the pages of its roots
-  std::uint64_t others = 0;       ///< without these pages, of all instances, or of all pages
-  std::uint64_t naive_open = 0;   ///< of `residencies`: a rule that looks at a group's own page alone opens the cut
-  std::uint64_t borders = 0;      ///< cuts whose border was held against the source's, edge by edge
-  std::uint64_t requests = 0;     ///< pages, of all queries
+  std::uint64_t residencies = 0;    ///< of one instance, with the pages of its roots
+  std::uint64_t others = 0;         ///< without these pages, of all instances, or of all pages
+  std::uint64_t naive_open = 0;     ///< of `residencies`: a rule that looks at a group's own page alone opens the cut
+  std::uint64_t borders = 0;        ///< cuts whose border was held against the source's, edge by edge
+  std::uint64_t requests = 0;       ///< pages, of all queries
   std::vector<SampledCut> samples;  ///< of the first cameras that draw something coarser than level 0, whole
 };
 
-/// `count` random residencies, up to kResidenciesPerCamera for each of as many cameras. `judges` has one entry per mesh.
-ResidentTotals check_resident_cuts(const run::Asset& asset, std::span<const MeshJudge> judges, std::uint32_t count,
-                                   std::uint64_t seed, RuleLog& log,
-                                   const std::function<ResidentSelection(const run::SelectTables&)>& make_selection =
-                                       make_resident_selection);
+/// `count` random residencies, up to kResidenciesPerCamera for each of as many cameras. `judges` has one entry per
+/// mesh.
+ResidentTotals check_resident_cuts(
+    const run::Asset& asset, std::span<const MeshJudge> judges, std::uint32_t count, std::uint64_t seed, RuleLog& log,
+    const std::function<ResidentSelection(const run::SelectTables&)>& make_selection = make_resident_selection);
 
 struct ShownErrors {
   std::uint64_t cuts = 0;      ///< measured

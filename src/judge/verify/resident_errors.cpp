@@ -18,9 +18,8 @@ constexpr std::uint64_t kShownSamples = 20000;
 bool promises_errors(const run::Asset& asset, const format::MeshRecord& mesh) {
   const auto groups = asset.groups().subspan(mesh.first_group, mesh.group_count);
   return mesh.error_tier != format::ErrorTier::kQem &&
-         std::none_of(groups.begin(), groups.end(), [](const format::GroupRecord& group) {
-           return (group.flags & format::kGroupAggregate) != 0;
-         });
+         std::none_of(groups.begin(), groups.end(),
+                      [](const format::GroupRecord& group) { return (group.flags & format::kGroupAggregate) != 0; });
 }
 
 }  // namespace

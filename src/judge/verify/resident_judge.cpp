@@ -72,7 +72,8 @@ std::string ResidentJudge::find_coverage_fault(const Residency& residency) const
       return place("group", surface.first_group + k) + ": the cut is open, a piece of surface below it is not drawn";
     }
     if (!is_rooted && up_to[k].most > 0) {
-      return place("group", surface.first_group + k) + ": its page is missing, and a piece of surface below it is drawn";
+      return place("group", surface.first_group + k) +
+             ": its page is missing, and a piece of surface below it is drawn";
     }
   }
   return {};
@@ -96,8 +97,12 @@ std::string ResidentJudge::find_fault(const Residency& residency, std::span<cons
   for (std::uint32_t c = 0; c < surface.cluster_count; ++c) {
     const format::ClusterRecord& cluster = asset_.clusters()[surface.first_cluster + c];
     // Errors grow along the DAG (I4): where a group surely fails, so do all groups above.
-    const auto surely_reached = [&](std::uint32_t k) { return weighed_[k].answer == Answer::kFails && is_blocked_[k] == 0; };
-    const auto surely_not = [&](std::uint32_t k) { return weighed_[k].answer == Answer::kPasses || is_blocked_[k] != 0; };
+    const auto surely_reached = [&](std::uint32_t k) {
+      return weighed_[k].answer == Answer::kFails && is_blocked_[k] == 0;
+    };
+    const auto surely_not = [&](std::uint32_t k) {
+      return weighed_[k].answer == Answer::kPasses || is_blocked_[k] != 0;
+    };
     const std::uint32_t coarser = cluster.coarser_group - surface.first_group;
     const bool is_finest = cluster.own_group == format::kNone;
     if (is_drawn_[c] == 0 && surely_reached(coarser) && (is_finest || surely_not(own_of(cluster)))) {
@@ -157,8 +162,8 @@ std::string ResidentJudge::find_unexplained(const Residency& residency, std::spa
     const std::uint32_t own = own_of(cluster);
     if (weighed_[own].answer != Answer::kFails || !is_below(least_requested_[own], weighed_[own].low_px)) continue;
     return place("cluster", item.cluster.value) + differs(" shows an error in pixels", weighed_[own].low_px,
-                                                           "a page in the way of a finer one is requested by",
-                                                           double{least_requested_[own]});
+                                                          "a page in the way of a finer one is requested by",
+                                                          double{least_requested_[own]});
   }
   return {};
 }
@@ -174,17 +179,16 @@ std::string find_request_fault(const Residency& residency, std::span<const run::
                            (request.priority == last->priority && request.page > last->page);
     if (!is_behind || !(request.priority > 0.0F)) return place("page", request.page) + " is requested out of order";
     if (double{request.priority} > weights[request.page].high * (1.0 + kPrioritySlack)) {
-      return place("page", request.page) +
-             differs(" is requested by", double{request.priority}, "its largest error in pixels",
-                     weights[request.page].high);
+      return place("page", request.page) + differs(" is requested by", double{request.priority},
+                                                   "its largest error in pixels", weights[request.page].high);
     }
     requested[request.page] = request.priority;
     last = &request;
   }
   for (std::uint32_t page = 0; page < weights.size(); ++page) {
     if (residency.has(page) || !is_below(requested[page], weights[page].low)) continue;
-    return place("page", page) + differs(" is requested by", double{requested[page]}, "its largest error in pixels",
-                                         weights[page].low);
+    return place("page", page) +
+           differs(" is requested by", double{requested[page]}, "its largest error in pixels", weights[page].low);
   }
   return {};
 }

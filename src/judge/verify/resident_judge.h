@@ -44,7 +44,8 @@ class ResidentJudge {
   /// Per page: raised to what this instance makes it.
   void raise_weights(std::span<PageWeight> weights) const;
   /// The drawn clusters of `items`, culled or not, that could be finer: each missing page that stands in the way is
-  /// requested, by at least the error that the cluster shows. \param requested  priority per page, 0 where there is none
+  /// requested, by at least the error that the cluster shows. \param requested  priority per page, 0 where there is
+  /// none
   [[nodiscard]] std::string find_unexplained(const Residency& residency, std::span<const run::ClusterInstance> items,
                                              std::span<const float> requested);
 
@@ -62,10 +63,10 @@ class ResidentJudge {
 
   const run::Asset& asset_;
   const MeshJudge& judge_;
-  std::vector<WeighedGroup> weighed_;      ///< per group of the mesh, as all that follows of groups
-  std::vector<std::uint8_t> is_blocked_;   ///< its page or that of a group above is missing
-  std::vector<std::uint8_t> is_drawn_;     ///< per cluster of the mesh
-  std::vector<float> least_requested_;     ///< of the missing pages of a group and of those above
+  std::vector<WeighedGroup> weighed_;     ///< per group of the mesh, as all that follows of groups
+  std::vector<std::uint8_t> is_blocked_;  ///< its page or that of a group above is missing
+  std::vector<std::uint8_t> is_drawn_;    ///< per cluster of the mesh
+  std::vector<float> least_requested_;    ///< of the missing pages of a group and of those above
 };
 
 /// What is wrong with the requests of a query that nothing is culled by; empty where nothing is: they fall, are of

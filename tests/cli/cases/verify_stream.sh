@@ -20,7 +20,8 @@ run verify rock.lode city.lode --stream --residencies 60
 run verify rock.lode --residencies 10
 run verify rock.lode --stream --residencies 0
 run verify rock.lode --stream --residencies 10000001
-run verify rock.lode --stream --gpu
+run verify rock.lode --stream --frames 10
+run verify rock.lode --stream --gpu --frames 0
 run verify rock.lode
 # Three bytes of a page: what is broken is named, and nothing behind it is looked at.
 cp rock.lode broken.lode

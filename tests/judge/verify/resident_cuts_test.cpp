@@ -240,7 +240,10 @@ TEST_F(ResidentCuts, WhatIsDrawnOrRequestedAmissIsFound) {
             }),
             kTried / 10)
       << "priorities are too large";
-  EXPECT_GT(found_after([](ResidentCut& cut, const Query&) { cut.requests.push_back({0xFFFFFFF0U, 1e-37F}); }), kTried)
+  EXPECT_GT(found_after([](ResidentCut& cut, const Query&) {
+              cut.requests.push_back({0xFFFFFFF0U, 1e-37F});
+            }),
+            kTried)
       << "a page is requested that does not exist";
   EXPECT_GT(found_after([](ResidentCut& cut, const Query& query) {
               if (query.frustum != nullptr && !cut.items.empty()) cut.items.erase(cut.items.begin());

@@ -6,11 +6,13 @@
 #define GROUP_SIZE 64
 #include "common.glsl"
 #include "cull.glsl"
+#include "resident.glsl"
 
 layout(constant_id = 3) const uint kHardware = 0u;
 
+// Or cannot be opened: then its members' replacements are as fine as it gets.
 bool own_group_passes(uint slot, uint own) {
-  if (own == kNone) return true;
+  if (own == kNone || !is_ready(own)) return true;
   const GpuGroup group = frame.groups.at[own];
   return metric_passes(frame.visible.at[slot].view, group.center[0], group.center[1], group.center[2], group.radius,
                        group.error);

@@ -3,6 +3,7 @@
 #version 460
 #define GROUP_SIZE 64
 #include "common.glsl"
+#include "resident.glsl"
 
 void main() {
   const uint slot = group_index();
@@ -21,6 +22,8 @@ void main() {
       is_open = !metric_passes(frame.visible.at[slot].view, group.center[0], group.center[1], group.center[2],
                                group.radius, group.error);
     }
+    if (is_open) want_page(frame.visible.at[slot].view, first + id);
+    is_open = is_open && is_ready(first + id);
     const uint at = append(STAGE_GROUPS + pass, is_open, kGroupLanes, 64u);
     if (is_open) {
       if (at < frame.group_capacity) frame.open_groups.at[at] = uvec2(slot, first + id);

@@ -67,14 +67,14 @@ struct GpuGroup {
   float error;
   uint first_cluster;
   uint cluster_count;
-  uint page_word;  // where the page of its clusters begins, in words from the start of the pages
+  uint page;  // of its clusters
 };
 
 struct GpuCluster {
   GPU_ARRAY(float, center, 3);
   float radius;
   uint own_group;  // 0xFFFFFFFF at level 0
-  uint page_word;
+  uint page;
   uint index;      // in the page; level << 16
   uint root_word;  // in the decoded roots; of a mesh's only root cluster
 };
@@ -281,7 +281,10 @@ struct GpuFrame {
   GPU_POINTER(ClusterArray) clusters;
   GPU_POINTER(MaterialArray) materials;
   GPU_POINTER(PageWords) pages;
-  GPU_POINTER(WordArray) roots;  // decoded: roots.comp
+  GPU_POINTER(PageWords) page_words;  // per page: where it begins, in words from the start of the pages
+  GPU_POINTER(PageWords) ready;       // per group a bit: its page is resident, and those of all coarser groups
+  GPU_POINTER(WordArray) priorities;  // per page, written by the frame: bits of a float, in pixels
+  GPU_POINTER(WordArray) roots;       // decoded: roots.comp
   GPU_POINTER(VisibleArray) visible;
   GPU_POINTER(PairArray) queue;        // parts of queue_capacity: (slot, node)
   GPU_POINTER(PairArray) open_groups;  // (slot, group)

@@ -6,6 +6,7 @@
 #define GROUP_SIZE 64
 #include "common.glsl"
 #include "cull.glsl"
+#include "resident.glsl"
 
 layout(constant_id = 3) const uint kFarInstances = 0u;
 layout(constant_id = 4) const uint kFarLanes = 32u;  // as in raster_far.comp
@@ -208,11 +209,12 @@ bool is_few_pixels(ClipBounds b) {
 }
 
 // Its one cluster is drawn as it is, several go the way of an open group's.
-void append_far(uint id, uint slot, uint group, bool is_far, CullRows rows) {
+void append_far(uint id, uint slot, uint group, bool is_far, MetricView view, CullRows rows) {
   uint cluster_count = 0u, cluster = 0u;
   bool is_small = false;
   if (is_far) {
-    cluster_count = frame.groups.at[group].cluster_count;
+    want_page(view, group);
+    cluster_count = is_ready(group) ? frame.groups.at[group].cluster_count : 0u;
     cluster = frame.groups.at[group].first_cluster;
     const GpuCluster c = frame.clusters.at[cluster];
     is_small = kFarRaster != 0u && cluster_count == 1u &&
@@ -320,7 +322,7 @@ void main() {
     if (kFarInstances != 0u) group = only_open_group(id, view);
   }
   const bool is_far = group != kNone;
-  if (kFarInstances != 0u) append_far(id, slot, group, is_far, rows);
+  if (kFarInstances != 0u) append_far(id, slot, group, is_far, view, rows);
   append_root(id, slot, fits && !is_far);
   if (!fits) return;
   frame.visible.at[slot].clip = clip.at;

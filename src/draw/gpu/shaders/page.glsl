@@ -15,7 +15,7 @@ LodeCluster open_cluster(GpuMesh mesh, uint cluster) {
   m.uv_set_count = mesh.uv_set_count;
   m.has_color = mesh.has_color;
   m.material = mesh.material;
-  return lode_read_cluster(m, frame.clusters.at[cluster].page_word, frame.clusters.at[cluster].index & 0xFFFFu);
+  return lode_read_cluster(m, frame.page_words.at[frame.clusters.at[cluster].page], frame.clusters.at[cluster].index & 0xFFFFu);
 }
 
 ivec3 cluster_position(LodeCluster c, uint vertex) { return lode_position(c, lode_raw_position(c, vertex)); }

@@ -149,7 +149,7 @@ vec3 shade(uint item, uint triangle, dvec2 p, uint level_count) {
   } else if (kView == VIEW_LEVELS) {
     color = ramp(level_count < 2u ? 0.0 : float(min(frame.clusters.at[cluster].index >> 16u, level_count - 1u)) / float(level_count - 1u));
   } else if (kView == VIEW_PAGES) {
-    color = hash_color(frame.clusters.at[cluster].page_word, 0x7067u);
+    color = hash_color(frame.page_words.at[frame.clusters.at[cluster].page], 0x7067u);
   } else if (kView == VIEW_PATHS) {
     color = (marked & ITEM_IS_FAR) != 0u ? vec3(0.15, 0.65, 0.1) : is_front_list ? vec3(0.05, 0.3, 0.75) : vec3(0.8, 0.06, 0.04);
   } else if (kView == VIEW_OCCLUDED) {

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+// Which groups may be opened where only some pages are resident (run/select/resident.h). A group that does not pass has
+// coarser groups above it that do not pass either (I4), so it is reached iff its page and those of all groups above are
+// resident: a bit of each group, the same for all instances.
+
+layout(constant_id = 9) const uint kStreams = 0u;
+
+bool is_ready(uint group) {
+  return kStreams == 0u || (frame.ready.at[group / 32u] >> (group % 32u) & 1u) != 0u;
+}
+
+// The group is open: its page is wanted, by the projected error that is left without it. Priorities order loads and decide
+// nothing that is drawn, so their division and square root need not be the CPU's.
+void want_page(MetricView view, uint id) {
+  if (kStreams == 0u) return;
+  const GpuGroup group = frame.groups.at[id];
+  float priority = kInfiniteError;
+  if (group.error < kInfiniteError) {
+    const vec4 center = vec4(group.center[0], group.center[1], group.center[2], 1.0);
+    const vec3 at = vec3(dot(view.row0, center), dot(view.row1, center), dot(view.row2, center));
+    const float distance = max(length(at) - group.radius * view.scale, view.near_distance);
+    priority = clamp(group.error * view.error_scale / distance, 1.17549435e-38, 8.5070592e37);  // 2^-126 ... 2^126
+  }
+  atomicMax(frame.priorities.at[group.page], floatBitsToUint(priority));
+}
