@@ -55,6 +55,14 @@ Status PagePool::upload_state() {
   return device_.upload(scene_.ready, bytes_of_table(ready));
 }
 
+Status PagePool::drop(std::uint32_t slot) {
+  std::uint32_t& page = page_of_slot_[slot];
+  if (page == format::kNone) return Ok{};
+  resident_[page / 32] &= ~(1U << page % 32);
+  page = format::kNone;
+  return upload_state();
+}
+
 Status PagePool::load_pages(std::span<const float> priorities, std::uint32_t most) {
   std::vector<std::uint32_t> wanted;
   for (std::uint32_t page = 0; page < priorities.size(); ++page) {
@@ -66,9 +74,9 @@ Status PagePool::load_pages(std::span<const float> priorities, std::uint32_t mos
   const auto priority_of = [&](std::uint32_t page) { return page == format::kNone ? -1.0F : priorities[page]; };
   bool has_changed = false;
   for (const std::uint32_t page : wanted) {
-    const auto slot = std::min_element(page_of_slot_.begin(), page_of_slot_.end(), [&](std::uint32_t a, std::uint32_t b) {
-      return priority_of(a) < priority_of(b);
-    });
+    const auto slot =
+        std::min_element(page_of_slot_.begin(), page_of_slot_.end(),
+                         [&](std::uint32_t a, std::uint32_t b) { return priority_of(a) < priority_of(b); });
     if (slot == page_of_slot_.end() || priority_of(*slot) >= priorities[page]) break;
     TRY(load_page(page, static_cast<std::uint32_t>(slot - page_of_slot_.begin())));
     has_changed = true;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A fixed pool of page slots on the device, and what the selection there reads of it: where each page begins, and of each
-// group whether it may be opened. Between two frames pages are loaded by the priorities that the frame wrote.
+// A fixed pool of page slots on the device, and what the selection there reads of it: where each page begins, and of
+// each group whether it may be opened. Between two frames pages are loaded by the priorities that the frame wrote.
 #pragma once
 
 #include <cstdint>
@@ -26,6 +26,9 @@ class PagePool {
   /// least priority makes room, if that is below the loaded one's. Errors: as run::load_page(); kUnsupported where the
   /// device fails.
   [[nodiscard]] Status load_pages(std::span<const float> priorities, std::uint32_t most);
+
+  /// Frees a slot, whatever is in it: for tests of what is drawn without a page.
+  [[nodiscard]] Status drop(std::uint32_t slot);
 
   /// As run::ResidentQuery::resident.
   [[nodiscard]] std::span<const std::uint32_t> resident() const { return resident_; }

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// V410: a path of frames that the device draws from a pool of pages. The CPU's selection with the same resident pages is
-// the reference, which V212 judges.
+// V410: a path of frames that the device draws from a pool of pages. The CPU's selection with the same resident pages
+// is the reference, which V212 judges.
 #include <algorithm>
 #include <cmath>
 #include <string>
 
+#include "base/random.h"
 #include "base/try.h"
 #include "draw/gpu/gpu_camera.h"
 #include "draw/gpu/page_pool.h"
@@ -70,8 +71,8 @@ Result<StreamFramesReport> verify_streaming_on_gpu(const run::Asset& asset, cons
   TRY_LET(device, draw::Device::open(options.device));
   out.device = device->info();
   out.pages = static_cast<std::uint32_t>(asset.pages().size());
-  out.slots = std::max({static_cast<std::uint32_t>(std::lround(out.pages * options.pool_share)),
-                        count_root_pages(asset), 1U});
+  out.slots =
+      std::max({static_cast<std::uint32_t>(std::lround(out.pages * options.pool_share)), count_root_pages(asset), 1U});
   const double pixel_error = options.pixel_error * options.size.height / kLines;
   draw::ImageBudget images(options.max_decoded);
   TRY_LET(scene, draw::upload_scene(*device, asset, {}, {}, &images, out.slots));
@@ -87,6 +88,7 @@ Result<StreamFramesReport> verify_streaming_on_gpu(const run::Asset& asset, cons
   run::ResidentSelector selector(run::tables_of(asset));
   std::vector<NamedCamera> cameras = orbit_cameras(asset, options.frames, drawing.width, drawing.height);
   std::reverse(cameras.begin(), cameras.end());
+  SplitMix64 random(1);
   for (const NamedCamera& named : cameras) {
     TRY_LET(depth, draw::depth_of_scene(asset, named.camera));
     TRY_LET(frame, renderer->draw(named.camera, pixel_error, *depth));
@@ -99,6 +101,8 @@ Result<StreamFramesReport> verify_streaming_on_gpu(const run::Asset& asset, cons
     ++out.frames;
     out.incomplete += selector.requests().empty() ? 0 : 1;
     TRY(pool.load_pages(*priorities, options.loads_per_frame));
+    // Loads by priority bring coarser pages first; without this no group would lack the page of a coarser one.
+    TRY(pool.drop(static_cast<std::uint32_t>(random.below(out.slots))));
   }
   out.loads = pool.loads();
   out.check.items = out.frames;

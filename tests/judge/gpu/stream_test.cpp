@@ -37,7 +37,7 @@ TEST_F(StreamOnGpu, EachFrameFromAPoolIsTheCpus) {
   EXPECT_EQ(report->check.items, 80U);
   EXPECT_EQ(report->check.failures, 0U) << report->check.first;
   EXPECT_LT(report->slots, report->pages);
-  EXPECT_GE(report->loads, report->slots) << "the pool is never full";
+  EXPECT_GT(report->loads, report->slots) << "pages have to be loaded again";
   EXPECT_GT(report->incomplete, 0U) << "no frame lacked a page, and nothing was tried";
 }
 
