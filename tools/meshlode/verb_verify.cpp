@@ -175,7 +175,7 @@ FileOutcome verify_file(const BulkInput& input, const VerifyCommand& command) {
       if (!judged) return fail(judged.error());
     }
   }
-  if (gpu_options.is_on && options.residencies > 0) {
+  if (gpu_options.is_on && report.streaming) {  // V212 ran: it is the source's, and whole
     const Status judged = verify_streaming_with_gpu(*asset, gpu_options, report);
     if (!judged) return fail(judged.error());
   }

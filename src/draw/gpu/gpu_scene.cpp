@@ -152,6 +152,7 @@ Result<Pages> make_slots(Device& device, const run::Asset& asset, GpuScene& scen
     scene.slot_bytes = std::max(scene.slot_bytes, (page.bytes + 15) / 16 * 16);
   }
   out.bytes = std::uint64_t{scene.slot_count} * scene.slot_bytes;
+  TRY(run::check_decoded_bytes(asset, out.bytes));
   if (out.bytes / 4 + 4 > 0xFFFFFFFFU) return Error{ErrorCode::kUnsupported, "pages", "a pool of more than 16 GiB"};
   TRY_LET(buffer, device.make_buffer(out.bytes + 16, Memory::kDevice));
   out.buffer = *buffer;

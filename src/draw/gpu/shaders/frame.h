@@ -283,7 +283,7 @@ struct GpuFrame {
   GPU_POINTER(PageWords) pages;
   GPU_POINTER(PageWords) page_words;  // per page: where it begins, in words from the start of the pages
   GPU_POINTER(PageWords) ready;       // per group a bit: its page is resident, and those of all coarser groups
-  GPU_POINTER(WordArray) priorities;  // per page, written by the frame: bits of a float, in pixels
+  GPU_POINTER(WordArray) priorities;  // per page, written by the frame: bits of a float (resident.glsl)
   GPU_POINTER(WordArray) roots;       // decoded: roots.comp
   GPU_POINTER(VisibleArray) visible;
   GPU_POINTER(PairArray) queue;        // parts of queue_capacity: (slot, node)

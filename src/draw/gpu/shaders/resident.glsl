@@ -16,9 +16,13 @@ void want_page(MetricView view, uint id) {
   const GpuGroup group = frame.groups.at[id];
   float priority = kInfiniteError;
   if (group.error < kInfiniteError) {
-    const vec4 center = vec4(group.center[0], group.center[1], group.center[2], 1.0);
-    const vec3 at = vec3(dot(view.row0, center), dot(view.row1, center), dot(view.row2, center));
-    const float distance = max(length(at) - group.radius * view.scale, view.near_distance);
+    const vec3 c = vec3(group.center[0], group.center[1], group.center[2]);
+    precise float x = ((view.row0.x * c.x + view.row0.y * c.y) + view.row0.z * c.z) + view.row0.w;
+    precise float y = ((view.row1.x * c.x + view.row1.y * c.y) + view.row1.z * c.z) + view.row1.w;
+    precise float z = ((view.row2.x * c.x + view.row2.y * c.y) + view.row2.z * c.z) + view.row2.w;
+    precise float distance2 = (x * x + y * y) + z * z;
+    precise float reach = group.radius * view.scale;
+    const float distance = max(sqrt(distance2) - reach, view.near_distance);
     priority = clamp(group.error * view.error_scale / distance, 1.17549435e-38, 8.5070592e37);  // 2^-126 ... 2^126
   }
   atomicMax(frame.priorities.at[group.page], floatBitsToUint(priority));
