@@ -64,7 +64,7 @@ install(FILES include/meshlode/format.h include/meshlode/page.h include/meshlode
 # the tree metric.h lies elsewhere.
 set(meshlode_shader_dir ${CMAKE_INSTALL_INCLUDEDIR}/meshlode/gpu)
 set(meshlode_glsl alpha.glsl clusters.comp common.glsl cull.glsl hardware.frag hardware.mesh hardware.vert instances.comp nodes.glsl
-                  page.glsl persistent.comp pyramid.comp raster.comp raster_clip.comp raster_far.comp roots.comp screen.glsl strips.glsl
+                  page.glsl persistent.comp pyramid.comp raster.comp raster_clip.comp raster_far.comp resident.glsl roots.comp screen.glsl strips.glsl
                   traverse.comp)
 list(TRANSFORM meshlode_glsl PREPEND src/draw/gpu/shaders/)
 install(FILES ${meshlode_glsl} DESTINATION ${meshlode_shader_dir} COMPONENT dev)
