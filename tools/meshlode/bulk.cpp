@@ -148,7 +148,7 @@ FileOutcome work_on(const BulkVerb& verb, const BulkInput& input) {
 
 }  // namespace
 
-std::size_t count_at_once(std::vector<std::uint64_t> bytes, std::uint64_t max_memory) {
+std::size_t count_at_once(std::vector<std::uint64_t> bytes, std::uint64_t max_memory, std::uint64_t besides) {
   std::uint64_t limit = max_memory;
   if (limit == 0) {
     const auto available = available_memory();
@@ -160,8 +160,8 @@ std::size_t count_at_once(std::vector<std::uint64_t> bytes, std::uint64_t max_me
   std::size_t count = 0;
   while (count < std::min(bytes.size(), thread_limit())) {
     const std::uint64_t need = std::min(bytes[count], ~std::uint64_t{0} / kMemoryPerByte) * kMemoryPerByte;
-    if (sum > limit || need > limit - sum) break;
-    sum += need;
+    if (sum > limit || need > limit - sum || besides > limit - sum - need) break;
+    sum += need + besides;
     ++count;
   }
   return std::max<std::size_t>(1, count);

@@ -118,7 +118,9 @@ void add_bulk_resources(OptionParser& parser, BulkWords& words);
 /// How many files of these sizes may be worked on at a time: as many as there are threads, fewer where the largest of
 /// them together would need more memory than that, or with 0 than there is. One is always worked on, as if it had been
 /// given alone.
-[[nodiscard]] std::size_t count_at_once(std::vector<std::uint64_t> bytes, std::uint64_t max_memory);
+/// \param besides  bytes that each takes whatever its size
+[[nodiscard]] std::size_t count_at_once(std::vector<std::uint64_t> bytes, std::uint64_t max_memory,
+                                        std::uint64_t besides = 0);
 
 /// Works on all and prints a row a file, with errors on stderr, or with --format json one document. A file that fails
 /// does not stop the others. `report`: where the rows or the document go, "-" for stdout. \returns the worst exit code

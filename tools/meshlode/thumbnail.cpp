@@ -61,7 +61,7 @@ Result<Thumbnail> draw_thumbnail(const run::Asset& asset) {
   if (!cut) return Error{ErrorCode::kUnsupported, "thumbnail", "the cut has too many clusters"};
   std::vector<draw::MaterialTextures> materials = draw::read_material_textures(asset);
   for (draw::MaterialTextures& material : materials) material.normal.reset();  // not seen so small, and as large
-  draw::ImageBudget images;
+  draw::ImageBudget images(kThumbnailImageBytes);
   const draw::AlphaMasks masks = draw::load_alpha_masks(asset, materials, images);
   TRY(masks.damage);
   const draw::TextureSet textures = draw::load_textures(asset, materials, images);

@@ -25,6 +25,10 @@ struct Thumbnail {
 /// Pixels. With 96x72 a page of 1,000 assets takes 2 MB more; a row of its table shows half as many a side.
 constexpr std::uint32_t kThumbnailWidth = 96, kThumbnailHeight = 72;
 
+/// Of decoded images with their smaller levels, for each picture that is drawn: four base colours of 2048 x 2048, which
+/// FlightHelmet has, take 90 MiB. What has no room is named in the note.
+constexpr std::uint64_t kThumbnailImageBytes = std::uint64_t{256} << 20U;
+
 /// The same view with base colours and light. The same bytes for the same asset. Errors: kInvalid for a broken page or
 /// image; kUnsupported for a cut that is too large.
 [[nodiscard]] Result<Thumbnail> draw_thumbnail(const run::Asset& asset);

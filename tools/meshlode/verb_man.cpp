@@ -41,14 +41,13 @@ std::vector<Page> all_pages(const std::vector<VerbHelp>& verbs, bool is_markdown
   return pages;
 }
 
-/// By `man`, with its pager. False where the machine has none.
+/// By `man`, with its pager. False where the machine has none, or one that shows no file.
 bool show_by_man(const std::string& page) {
   if (std::system("command -v man >/dev/null 2>&1") != 0) return false;
   std::FILE* const man = ::popen("man -l -", "w");
   if (man == nullptr) return false;
   std::fputs(page.c_str(), man);
-  ::pclose(man);  // it says itself what went wrong
-  return true;
+  return ::pclose(man) == 0;
 }
 
 int run_man(const Verb& verb, std::span<char* const> args) {

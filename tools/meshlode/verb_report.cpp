@@ -9,6 +9,7 @@
 #include "app/batch/jobs/weigh.h"
 #include "app/batch/shard/read_manifest.h"
 #include "app/overview/overview.h"
+#include "base/guarded.h"
 #include "base/parallel.h"
 #include "base/try.h"
 #include "bulk.h"
@@ -53,22 +54,22 @@ std::string text_of(const app::Overview& overview, const ReportFile& file, const
 }
 
 /// So that the largest assets together stay below the limit.
-std::size_t assets_at_once(const app::Manifest& manifest, std::uint64_t max_memory) {
+std::size_t assets_at_once(const app::Manifest& manifest, std::uint64_t max_memory, bool with_thumbnails) {
   std::vector<std::uint64_t> bytes;
   for (const app::JobResult& result : manifest.results) {
     if (result.has_asset()) bytes.push_back(app::weigh_scene(result.job.output));
   }
-  return count_at_once(std::move(bytes), max_memory);
+  return count_at_once(std::move(bytes), max_memory, with_thumbnails ? kThumbnailImageBytes : 0);
 }
 
 void add_thumbnail(const run::Asset& asset, app::OverviewAsset& row) {
-  Result<Thumbnail> drawn = draw_thumbnail(asset);
-  if (!drawn) {
-    row.thumbnail_note = drawn.error().message();
-    return;
-  }
-  row.thumbnail = std::move(drawn->webp);
-  row.thumbnail_note = std::move(drawn->note);
+  const Status done = guarded({}, [&]() -> Status {  // a picture that cannot be had costs no row its findings
+    TRY_LET(drawn, draw_thumbnail(asset));
+    row.thumbnail = std::move(drawn->webp);
+    row.thumbnail_note = std::move(drawn->note);
+    return Ok{};
+  });
+  if (!done) row.thumbnail_note = done.error().message();
 }
 
 int run_report(const Verb& verb, std::span<char* const> args) {
@@ -121,7 +122,7 @@ int run_report(const Verb& verb, std::span<char* const> args) {
   std::optional<app::Overview> overview;
   JobLimit limit(resources.jobs);
   limit.run([&] {
-    const std::size_t at_once = assets_at_once(*manifest, *max_memory);
+    const std::size_t at_once = assets_at_once(*manifest, *max_memory, !no_thumbnails);
     overview = app::make_overview(
         std::move(*manifest), old ? &*old : nullptr,
         [&](const run::Asset& asset, app::OverviewAsset& row, std::vector<app::Diagnosis>& diagnoses) {

@@ -136,6 +136,9 @@ FileOutcome verify_file(const BulkInput& input, const VerifyCommand& command) {
   judge::VerifyOptions options = command.checks;
   const GpuOptions& gpu_options = command.gpu;
   const bool is_alone = options.residencies > 0 && source_options.path.empty();  // what --stream checks needs no source
+  if (is_alone && gpu_options.is_on && !(gpu_options.path.empty() && gpu_options.out_folder.empty())) {
+    return fail({ErrorCode::kUsage, "", "--path and --out-dir need --source: they are of what is compared with it"});
+  }
   if (!is_alone) {
     const Status given = check_source_options("verify", path, source_options);
     if (!given) return fail(given.error());

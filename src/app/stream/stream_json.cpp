@@ -72,7 +72,8 @@ void put_log(JsonWriter& json, const RunResult& run) {
   json.end_array();
 }
 
-void put_run(JsonWriter& json, const StreamReport& report, const RunSpec& spec, const RunResult& run) {
+/// \param is_watched  the run has what the log and the checks say
+void put_run(JsonWriter& json, const StreamReport& report, const RunSpec& spec, const RunResult& run, bool is_watched) {
   json.begin_object();
   json.optional_field("pool_bytes", spec.pool_bytes);
   json.field("megabytes_per_second", spec.link.megabytes_per_second);
@@ -93,14 +94,14 @@ void put_run(JsonWriter& json, const StreamReport& report, const RunSpec& spec, 
     put_recovery(json, "until_asked", run.asked);
     put_recovery(json, "until_fourfold", run.fourfold);
     put_error(json, "error", run.error);
-    if (report.has_log) {
+    if (report.has_log && is_watched) {
       json.key("log");
       json.begin_object();
       put_log(json, run);
       json.end_object();
     }
   }
-  if (report.is_checked) {
+  if (report.is_checked && is_watched) {
     json.field("checked_frames", run.checked_frames);
     json.field("finding_count", run.finding_count);
     json.array_field("findings", run.findings);
@@ -119,7 +120,7 @@ void put_layouts(JsonWriter& json, const StreamReport& report) {
     json.field("pages", tried.pages);
     put_demand(json, tried.demand);
     json.key("run");
-    put_run(json, report, report.specs.front(), tried.run);
+    put_run(json, report, report.specs.front(), tried.run, false);
     json.end_object();
   }
   json.end_array();
@@ -171,7 +172,7 @@ std::string stream_json(const StreamReport& report) {
   json.key("runs");
   json.begin_array();
   for (std::size_t i = 0; i < report.specs.size(); ++i)
-    put_run(json, report, report.specs[i], report.simulation.runs[i]);
+    put_run(json, report, report.specs[i], report.simulation.runs[i], true);
   json.end_array();
   if (!report.layouts.empty()) put_layouts(json, report);
   if (report.has_log) put_pages(json, report.scene);

@@ -102,7 +102,8 @@ struct ImageTask {
   bool may_be_webp = false;
   std::uint64_t bytes = 0;  ///< that the work takes
 
-  [[nodiscard]] bool may_be_lossy() const { return is_color(texels) && std::min(width, height) > kMostSwatchSide; }
+  [[nodiscard]] bool is_swatch() const { return std::min(width, height) <= kMostSwatchSide; }
+  [[nodiscard]] bool may_be_lossy() const { return is_color(texels) && !is_swatch(); }
 };
 
 struct EncodedImage {
@@ -136,10 +137,12 @@ Result<EncodedImage> encode_smallest(draw::DecodedImage& image, const ImageTask&
     TRY_LET(png, encode_png_file(image));
     take(std::move(*png), FileKind::kPng);
   }
-  // A source of low quality: about there fewer texels take fewer bytes, and what is lost was lost before.
+  // A source of low quality: about there fewer texels take fewer bytes, and what is lost was lost before. A swatch has
+  // colours to keep, and what takes more bytes at any quality loses nothing for it.
+  const EncodedImage usual = best;
   for (int quality = kJpegQuality - 10; task.is_smaller && quality > 0 && best.bytes.size() >= source_bytes;
        quality -= 10) {
-    if (task.kind == FileKind::kJpeg) {
+    if (task.kind == FileKind::kJpeg && !task.is_swatch()) {
       TRY_LET(jpeg, encode_jpeg_file(image, quality));
       take(std::move(*jpeg), FileKind::kJpeg);
     } else if (task.kind == FileKind::kWebp && task.may_be_lossy() && choice.webp_quality == 0) {
@@ -149,6 +152,7 @@ Result<EncodedImage> encode_smallest(draw::DecodedImage& image, const ImageTask&
       break;
     }
   }
+  if (best.bytes.size() >= source_bytes) best = usual;
   return best;
 }
 

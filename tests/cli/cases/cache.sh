@@ -60,7 +60,7 @@ for tier in qem measured certified qem; do
   grep -A 3 '"cache": ' tier.json
 done
 # Built are assets whose pages depend on the tier, and scenes whose meshes may have tiers of their own.
-for words in '--preset fast' '--promise texels' rules; do
+for words in '--preset fast' '--promise texels' '--page-order covisible' rules; do
   [ "$words" != rules ] || { printf '{"meshes": {"*": {"drop": "TEXCOORD_0"}}}' >told/meshlode.json; words=; }
   for tier in qem measured; do
     "$MESHLODE" build -q told/a.glb -o tier.lode --cache tiers $words --error-tier $tier --manifest tier.json

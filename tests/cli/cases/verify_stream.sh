@@ -22,6 +22,7 @@ run verify rock.lode --stream --residencies 0
 run verify rock.lode --stream --residencies 10000001
 run verify rock.lode --stream --frames 10
 run verify rock.lode --stream --gpu --frames 0
+run verify rock.lode --stream --gpu --out-dir maps
 run verify rock.lode
 # Three bytes of a page: what is broken is named, and nothing behind it is looked at.
 cp rock.lode broken.lode

@@ -39,6 +39,19 @@ TEST_F(StreamOnGpu, EachFrameFromAPoolIsTheCpus) {
   EXPECT_LT(report->slots, report->pages);
   EXPECT_GT(report->loads, report->slots) << "pages have to be loaded again";
   EXPECT_GT(report->incomplete, 0U) << "no frame lacked a page, and nothing was tried";
+  checks.frames = 6;
+  checks.pixel_error = 0.0;  // level 0: which pages are asked for, and not by how much
+  const auto exact = verify_streaming_on_gpu(*asset, checks);
+  ASSERT_TRUE(exact.ok()) << exact.error().message();
+  EXPECT_EQ(exact->check.failures, 0U) << exact->check.first;
+  for (scene::SceneInstance& instance : scene.instances) instance.transform = Mat4d(0.0);
+  const auto flat = builder::build_lode(scene, options, {}, built);
+  ASSERT_TRUE(flat.ok()) << flat.error().message();
+  const Result<run::Asset> unseen = run::Asset::from_vector(*flat);
+  ASSERT_TRUE(unseen.ok()) << unseen.error().message();
+  const auto nothing = verify_streaming_on_gpu(*unseen, checks);
+  ASSERT_TRUE(nothing.ok()) << nothing.error().message();
+  EXPECT_TRUE(nothing->check.is_skipped);
 }
 
 }  // namespace

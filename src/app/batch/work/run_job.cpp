@@ -17,8 +17,10 @@
 #include "app/measure/measure_asset.h"
 #include "base/guarded.h"
 #include "base/memory.h"
+#include "base/parallel.h"
 #include "base/try.h"
 #include "builder/builder.h"
+#include "builder/needs.h"
 #include "builder/stage_options.h"
 #include "format/names.h"
 #include "run/read/asset.h"
@@ -255,29 +257,34 @@ class Run {
     watcher_.on_write(result);
   }
 
-  /// What a build would give, of an asset in the cache that differs in its error tier alone: no triangle depends on the
-  /// tier, and errors take half as long to measure as a mesh to build, or less. Nothing: there is none, or its errors
-  /// cannot be measured (measure_asset()).
+  /// What a build would give, of a cached asset that differs in its error tier alone: no triangle depends on the tier.
+  /// Nothing: there is none, measure_asset() cannot, or memory has no room for the build, which then says so.
   std::optional<std::vector<std::uint8_t>> measure_cached(const scene::Scene& scene) {
-    if (ingredients_.empty() || pipeline_.hooks != nullptr) return std::nullopt;
-    if (!mesh_rules_text(layers_).empty()) return std::nullopt;  // they may name tiers
+    // Rules of meshes may name tiers, and covisible is an order by errors.
+    const bool may_differ = !mesh_rules_text(layers_).empty() || pipeline_.page_order != PageOrder::kLevel;
+    if (ingredients_.empty() || pipeline_.hooks != nullptr || may_differ) return std::nullopt;
+    const builder::MemoryEstimate estimate = builder::estimate_memory(scene, pipeline_);
+    const auto fit =
+        builder::fit_memory(estimate, scene, static_cast<std::uint32_t>(thread_limit()), pipeline_.max_memory);
+    if (!fit) return std::nullopt;
     for (const auto& [tier, name] : format::kErrorTierNames) {
       builder::PipelineOptions other = pipeline_;
       other.error_tier = tier;
       if (tier == pipeline_.error_tier) continue;
       const auto record = options_.cache->find_record(ingredients_with(other));
-      if (!record) continue;
-      const auto entry = options_.cache->store().find(EntryKind::kAsset, record->asset);
+      const auto entry = record ? options_.cache->store().find(EntryKind::kAsset, record->asset) : std::nullopt;
       if (!entry) continue;
       const auto asset = run::Asset::from_bytes(entry->bytes);
       if (!asset) continue;
       const Timer timer;
-      auto bytes = measure_asset(*asset, scene, pipeline_.error_tier);
+      auto bytes =
+          with_threads_at_most(fit->threads, [&] { return measure_asset(*asset, scene, pipeline_.error_tier); });
       if (!bytes) continue;
       result_.reason += std::string("; triangles of the cached asset of --error-tier ") + name;
       result_.stages.push_back({"measure_cached", timer.seconds()});
       result_.facts = record->facts;
       result_.meshes_from_cache = record->facts.meshes;
+      result_.memory_estimate = estimate.bytes(fit->at_once, fit->threads);
       return std::move(*bytes);
     }
     return std::nullopt;
