@@ -27,6 +27,8 @@ static unsigned char* head; /* kept as long as the asset */
 static meshlode_selector* selector;
 static meshlode_page_cache cache;
 static meshlode_draw_item* list;
+static float* wanted;             /* per page its priority, for the pool */
+static unsigned char* has_failed; /* per page */
 static uint32_t slot_words;
 static size_t capacity, bytes_read;
 
@@ -60,6 +62,8 @@ static void make_pool(uint32_t slots) {
   if ((uint64_t)slots * slot_words > UINT32_MAX) stop("pool", "too large for 32-bit words");
   meshlode_page_cache_init(&cache, page_count, slots, take(meshlode_page_cache_words(page_count, slots), 4),
                            take(page_count, sizeof(float)));
+  wanted = take(page_count, sizeof *wanted);
+  has_failed = take(page_count, 1);
   make_buffer(PAGES, (size_t)slots * slot_words * 4, storage);
   make_buffer(GROUPS, 16, storage); /* of the shader that selects: not used here */
   make_buffer(CLUSTERS, cluster_count * sizeof *found, storage);
@@ -91,6 +95,7 @@ static int load_pages(void) {
     for (i = 0; is_sound && i < pages[page].cluster_count; ++i)
       found[pages[page].first_cluster + i].page_word = slot * slot_words;
     meshlode_page_cache_end(&cache, page, is_sound);
+    has_failed[page] = !is_sound;
     if (is_sound) ++loads;
   }
   return loads;
@@ -101,6 +106,7 @@ static size_t draw_frame(const meshlode_view* view, const double target[3], cons
                          int* loads) {
   meshlode_frustum frustum;
   gpu_item* items = mapped[ITEMS];
+  const float* priorities;
   size_t count = 0, i;
   if (meshlode_make_frustum(view, target, axes[1], (double)WIDTH / HEIGHT, &frustum, &error) ||
       meshlode_select_resident(selector, view, &frustum, pixel_error, cache.resident, list, capacity, &count, &error))
@@ -113,7 +119,10 @@ static size_t draw_frame(const meshlode_view* view, const double target[3], cons
   place_instances(view->eye, axes);
   begin_frame();
   end_frame();
-  meshlode_page_cache_update(&cache, meshlode_page_priorities(selector, &i));
+  /* A page that failed is not tried again: each attempt evicts a sound page of a full pool. */
+  priorities = meshlode_page_priorities(selector, &i);
+  for (i = 0; i < page_count; ++i) wanted[i] = has_failed[i] ? 0.0f : priorities[i];
+  meshlode_page_cache_update(&cache, wanted);
   *loads = load_pages();
   return count;
 }

@@ -84,6 +84,9 @@ same vulkan_stream small.lode 1 3,2,4 0,0,0 8
 head -c 60000 small.lode >bad.lode && printf '\125\125\125' >>bad.lode && tail -c +60004 small.lode >>bad.lode
 said=$(b/vulkan_stream bad.lode x.png 0.1 3 2 4 0 0 0 100 2>&1) || fail "a wrong page: $said"
 [[ $said == *"checksum"*"coarser"*" pages missing"* ]] || fail "a wrong page is not named: $said"
+# In a full pool too it comes to an end.
+said=$(timeout 60 b/vulkan_stream bad.lode x.png 0.1 3 2 4 0 0 0 8 2>&1) || fail "a wrong page in a full pool: $said"
+[[ $said == *"checksum"*"coarser"*" 8 slots, "[1-9]* ]] || fail "a wrong page in a full pool is not named: $said"
 head -c 20000 small.lode >cut.lode
 b/vulkan_stream cut.lode x.png 1 3 2 4 0 0 0 9 2>/dev/null && fail "a cut file is drawn"
 echo "PASSED"
