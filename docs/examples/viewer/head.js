@@ -3,32 +3,48 @@
 
 const FIRST_BYTES = 65536; // as meshlode/three reads first, so that a cache may answer
 const MOST_BYTES = 2 ** 30; // of tables: a tab has no memory for more
+const LIMIT_MS = 30000; // within which so many bytes have to come: as meshlode/three's timeoutMs
 
 /** At least the first `bytes` of a file, or all of it. */
-async function readStart(url, bytes) {
-  const response = await fetch(url, { headers: { Range: `bytes=0-${bytes - 1}` } });
-  if (!response.ok) throw new Error(`the server answers ${response.status}`);
-  const parts = [];
-  let size = 0;
-  const reader = response.body.getReader();
-  while (size < bytes) {
-    const { value, done } = await reader.read();
-    if (done) break;
-    parts.push(value);
-    size += value.length;
+async function readStart(url, bytes, abort) {
+  let timer = 0;
+  const arm = () => {
+    clearTimeout(timer);
+    timer = setTimeout(() => abort.abort(new Error(`too slow: less than ${FIRST_BYTES} bytes within ${LIMIT_MS} ms`)), LIMIT_MS);
+  };
+  arm();
+  try {
+    const response = await fetch(url, { headers: { Range: `bytes=0-${bytes - 1}` }, signal: abort.signal });
+    if (!response.ok) throw new Error(`the server answers ${response.status}`);
+    const parts = [];
+    let [size, armed] = [0, 0];
+    const reader = response.body.getReader();
+    while (size < bytes) {
+      const { value, done } = await reader.read();
+      if (done) break;
+      parts.push(value);
+      size += value.length;
+      if (size - armed < FIRST_BYTES) continue;
+      armed = size;
+      arm();
+    }
+    await reader.cancel(); // of a server without ranges
+    return new Uint8Array(await new Blob(parts).arrayBuffer());
+  } catch (error) {
+    throw abort.signal.aborted ? abort.signal.reason : error;
+  } finally {
+    clearTimeout(timer);
   }
-  await reader.cancel(); // of a server without ranges
-  return new Uint8Array(await new Blob(parts).arrayBuffer());
 }
 
-/** {asset, facts} of a file that loadLode() has opened: its size is what its header says. */
-export async function openHead(url, runtime) {
-  let head = await readStart(url, FIRST_BYTES);
+/** {asset, facts} of a file: its size is what its header says. `abort`: an AbortController, which the time limit uses too. */
+export async function openHead(url, runtime, abort) {
+  let head = await readStart(url, FIRST_BYTES, abort);
   if (head.length < 64) throw new Error('this is not a .lode file');
   const fileBytes = Number(new DataView(head.buffer).getBigUint64(16, true));
   const { bytes } = runtime.headBytes(head, fileBytes);
   if (bytes > MOST_BYTES) throw new Error(`its tables have ${bytes} bytes`);
-  if (head.length < bytes) head = await readStart(url, bytes);
+  if (head.length < bytes) head = await readStart(url, bytes, abort);
   const asset = runtime.openHead(head.subarray(0, bytes), fileBytes);
   return { asset, facts: { file_bytes: fileBytes, sections: sectionsOf(head) } };
 }

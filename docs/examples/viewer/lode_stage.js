@@ -166,7 +166,7 @@ export class LodeStage {
     const before = lode.children.map((batch) => batch.material);
     for (const batch of lode.children) {
       renewRanges(batch);
-      batch.material = this.#materialFor(this.#own.get(batch), 'edges');
+      batch.material = this.#materialFor(this.#own.get(batch) ?? batch.material, 'edges'); // its own until #dress()
       batch.material.color.set(this.edge);
     }
     // A step nearer than the triangles that they are of, until the next picture: lines have no polygon offset.
@@ -189,6 +189,7 @@ export class LodeStage {
 
   /** The cluster at a place of the canvas, CSS pixels. */
   #pick(x, y) {
+    if (!this.lode) return undefined;
     const at = new THREE.Vector2((2 * x) / this.canvas.clientWidth - 1, 1 - (2 * y) / this.canvas.clientHeight);
     const ray = new THREE.Raycaster();
     ray.setFromCamera(at, this.camera);

@@ -89,7 +89,8 @@ class StreamingViewer extends Viewer {
       this.worker.postMessage(this.link);
       lode.addEventListener('error', ({ message, isFatal }) => this.sayError(message, isFatal));
       lode.addEventListener('statistics', ({ statistics }) => this.sayStatistics(statistics));
-      lode.addEventListener('change', () => this.markCut(lode.drawn.clusters));
+      lode.addEventListener('change', () => this.markCut(lode.drawn?.clusters ?? []));
+      lode.pixelError = this.pixelError; // it may have changed meanwhile
       this.view.setLode(lode);
     } catch (error) {
       if (attempt === this.attempt) this.sayError(error.message, true);
@@ -137,6 +138,8 @@ class StreamingViewer extends Viewer {
     this.attempt = -1;
     this.view.end();
     super.end();
+    byId('statistics').replaceChildren();
+    byId('progress').value = 0;
     if (this.file.startsWith('blob:')) URL.revokeObjectURL(this.file);
   }
 }
@@ -147,6 +150,7 @@ const address = new Address();
 let runtime = null;
 let viewer = null;
 let opening = 0;
+let reading = new AbortController(); // of the head
 
 function refuse(message) {
   byId('summary').textContent = message;
@@ -157,24 +161,35 @@ function refuse(message) {
 /** Opens an address or a file in place of what is shown. */
 async function open(file, name) {
   const mine = ++opening;
+  reading.abort();
+  const abort = (reading = new AbortController());
   viewer?.end();
   viewer = null;
   const { dataset } = document.documentElement;
   for (const key of ['failed', 'settled', 'drawn']) delete dataset[key];
   byId('summary').textContent = `Reading ${name} …`;
   document.title = `${name} – meshlode viewer`;
+  let opened = null;
+  let isTaken = false; // by a viewer, which frees it
   try {
     runtime ??= await loadRuntime();
-    const { asset, facts } = await openHead(file, runtime);
-    if (mine !== opening) return asset.close();
-    viewer = new StreamingViewer(facts, asset, address, file);
+    opened = await openHead(file, runtime, abort);
+    if (mine !== opening) return;
+    viewer = new StreamingViewer(opened.facts, opened.asset, address, file);
+    isTaken = true;
     window.meshlodeViewer = viewer; // for a console, and for tests
     document.body.classList.remove('empty');
     viewer.start();
     await viewer.load();
   } catch (error) {
+    if (error instanceof WebAssembly.RuntimeError) runtime = opened = null; // a trap: the memory of the module may be anything
     if (!viewer) byId('graph').replaceWith(byId('graph').cloneNode()); // with the listeners of one that could not be made
     if (mine === opening) refuse(`${name} cannot be shown: ${error.message}`);
+  } finally {
+    if (!isTaken) {
+      opened?.asset.close();
+      if (file.startsWith('blob:')) URL.revokeObjectURL(file);
+    }
   }
 }
 function openFile(file) {

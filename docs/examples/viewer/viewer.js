@@ -98,6 +98,7 @@ export class Viewer {
     for (const [first, size] of facts.embedded_pages ?? [[0, asset.pages.length]]) this.present.fill(1, first, first + size);
     this.cap = clusterCap(asset);
     this.selected = NONE;
+    this.unselected = [...byId('selection').childNodes]; // what is said where nothing is selected
     this.view = null;
     this.listeners = new AbortController();
     this.graph = new Graph(byId('graph'), asset, this.made, this.cap, (cluster) => this.select(cluster));
@@ -195,6 +196,8 @@ export class Viewer {
     this.listeners.abort();
     for (const id of ['graph', 'treemap']) byId(id).replaceWith(byId(id).cloneNode()); // with their listeners
     byId('mesh').replaceChildren();
+    byId('selection').replaceChildren(...this.unselected);
+    byId('cut-text').textContent = '';
     this.asset.close();
   }
 

@@ -70,6 +70,12 @@ async function lookAtModes(name) {
     await tab.value(set('wire', false, 'change'));
     expect((await tab.value(PICTURE)).sum === sum, `${name}: ${mode} without them is what it was`);
   }
+  // A batch of clusters that have come and are not drawn yet.
+  await tab.value(set('wire', true, 'change'));
+  const end = await tab.value(`(() => { const { view } = meshlodeViewer; const other = view.lode.children[0].clone(); other.userData = { shown: [] }; view.lode.add(other);
+    try { view.drawNow(); return 'a picture'; } catch (error) { return error.message; } finally { view.lode.remove(other); other.dispose(); } })()`);
+  expect(end === 'a picture', `${name}: edges with a new batch: ${end}`);
+  await tab.value(set('wire', false, 'change'));
   const alike = [...seen].filter(([, sum], i) => [...seen.values()].indexOf(sum) !== i).map(([mode]) => mode);
   // Where nothing is stuck all is one colour, as where all clusters are full.
   expect(alike.every((mode) => ['stuck', 'ratio', 'fill'].includes(mode)), `${name}: modes differ ${alike.join(' ')}`);
@@ -157,8 +163,22 @@ async function lookAtBadFiles() {
   await tab.value(`document.getElementById('lode').value = '/assets/rock.lode'; document.getElementById('open').requestSubmit()`);
   expect(await tab.until(`${IS_OVER} && meshlodeViewer.facts.file_bytes === ${rock.length}`, 20), 'another file: is opened');
   expect(await tab.value(`document.getElementById('errors').hidden && location.hash.includes('rock.lode')`), 'another file: its address, and nothing is wrong');
-  await tab.value('new Promise((done) => setTimeout(done, 500))');
+  await tab.value('meshlodeViewer.select(3); new Promise((done) => setTimeout(done, 500))');
   expectSilence(tab, 'another file');
+  // A head that does not come: its request ends with the next file, or with time. Nothing of the files before is left.
+  server.fault = ({ path }) => (path.endsWith('/terrain.lode') ? { hang: true } : null);
+  const ask = (lode) => tab.value(`document.getElementById('lode').value = '/assets/${lode}.lode'; document.getElementById('open').requestSubmit()`);
+  await tab.value(`window.signals = []; window.fetch = new Proxy(fetch, { apply: (call, self, args) => (signals.push(args[1]?.signal), Reflect.apply(call, self, args)) });
+    window.setTimeout = new Proxy(setTimeout, { apply: (call, self, [what, ms]) => Reflect.apply(call, self, [what, ms === 30000 ? limitMs : ms]) });
+    window.limitMs = 300;`);
+  await ask('terrain');
+  expect(await tab.until(`/cannot be shown: too slow/.test(${text('summary')})`, 10), `no head: ${await tab.value(text('summary'))}`);
+  expect(await tab.value(`${text('selection')}.startsWith('Nothing is selected') && ${text('cut-text')} + ${text('statistics')} === ''`), 'no head: nothing is said of the file before');
+  await tab.value('limitMs = 30000');
+  await ask('terrain');
+  await ask('rock');
+  expect(await tab.until(`${IS_OVER} && signals[1].aborted && !signals[2].aborted`, 20), 'no head: another file ends the request');
+  server.fault = null;
   await tab.close();
 }
 
@@ -183,18 +203,29 @@ async function lookAtLinks() {
   await tab.until('meshlodeViewer.view.lode.statistics.isFull', 10);
   const { isFull, drawnClusters } = await tab.value('meshlodeViewer.view.lode.statistics');
   expect(isFull && drawnClusters < before && (await tab.value(text('statistics'))).includes('full'), `a pool of half a mebibyte is full: ${drawnClusters} of ${before} clusters`);
+  const isMet = `(async () => { const end = meshlodeViewer.load(); ${set('pixels', 20, 'input')}; await end; return meshlodeViewer.view.lode.pixelError === 4; })()`;
+  expect(await tab.value(isMet), 'an error that is set while a file is opened holds');
   expectSilence(tab, 'links');
   await tab.close();
 }
 
 async function lookAtHands() {
+  const early = await browser.open(`${server.origin}/viewer/index.html#lode=/assets/rock.lode&latency=7`, { width: 1280, height: 900, isDark: false });
+  await early.until('window.meshlodeViewer !== undefined', 20);
+  await early.click(...(await early.value(middleOf('mesh-view'))));
+  expect(await early.value('meshlodeViewer.view.lode === null && meshlodeViewer.selected === 0xffffffff'), 'a click before anything is drawn');
+  expectSilence(early, 'a click before anything is drawn');
+  await early.close();
   const tab = await open('');
   expect((await tab.value(text('summary'))).startsWith('Drop a .lode'), 'without an address: says what to do');
   await shoot(tab, 'empty');
+  const drop = (bytes, name) => tab.value(`(async () => { const data = new DataTransfer(); data.items.add(new File([${bytes}], '${name}'));
+    for (const event of ['dragover', 'drop']) dispatchEvent(new DragEvent(event, { dataTransfer: data, cancelable: true })); })()`);
+  await tab.value(`window.freed = []; URL.revokeObjectURL = new Proxy(URL.revokeObjectURL, { apply: (call, self, args) => (freed.push(...args), Reflect.apply(call, self, args)) });`);
+  await drop('"noise"', 'noise.lode');
+  expect(await tab.until(`/noise.lode cannot be shown/.test(${text('summary')}) && freed.length === 1`, 10), 'a dropped file that is none: is refused and freed');
   // A file that is dropped.
-  await tab.value(`(async () => { const file = new File([await (await fetch('/assets/rock.lode')).blob()], 'dropped <b>.lode');
-    const data = new DataTransfer(); data.items.add(file);
-    for (const name of ['dragover', 'drop']) dispatchEvent(new DragEvent(name, { dataTransfer: data, cancelable: true })); })()`);
+  await drop(`await (await fetch('/assets/rock.lode')).blob()`, 'dropped <b>.lode');
   expect(await tab.until(`window.meshlodeViewer?.view.lode?.isSettled`, 20), 'a dropped file: is shown');
   expect((await tab.value('document.title')).startsWith('dropped <b>.lode') && !(await tab.value('location.hash')).includes('blob'), 'a dropped file: its name, and no address of it');
   await tab.value(`document.getElementById('mesh-view').focus()`);
