@@ -214,11 +214,14 @@ async function lookAtHostile(browser, server) {
   await tab.value('test.setCamera({ eye: [NaN, 0, 0], target: [0, 0, 0], near: 1 })');
   await tab.until(`(test.settle(0.1), test.errors.length > 0)`, 10); // nothing was selected yet
   await refused('a camera that is none', (await tab.value('test.errors'))[0] ?? 'nothing', /^camera$/);
+  await refused('a camera without a place', await tab.value(`(() => { try { test.lode.select(null, { view: { isOrthographic: true, orthoHeight: 1,
+    nearDistance: 1, heightPx: 480 }, viewProjection: new Array(16).fill(0) }); return 'ok'; } catch ({ place, message }) { return { place, message }; } })()`), /^camera$/);
   await refused('no format', await tab.value(`test.open('/assets/terrain.lode', { format: undefined })`), /^options$/);
   // A device with room for less than the tables.
   await tab.value(`(test.device = new Proxy({}, { get: (_, name) => name === 'limits' ? { maxStorageBufferBindingSize: 4096, maxBufferSize: 4096 } :
     typeof real[name] === 'function' ? real[name].bind(real) : real[name] }), 0)`.replaceAll('real', 'test.realDevice'));
   await refused('a small device', await tab.value(`test.open('/assets/terrain.lode')`), /^scene$/);
+  expect(await tab.value(`test.realDevice.popErrorScope().then(() => false, () => true)`), 'a small device: no error scope is left');
   await tab.value('(test.device = undefined, 0)');
 
   // A page whose bytes are wrong: coarser geometry, the native cut without it, and the place in an event.

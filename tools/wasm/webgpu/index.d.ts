@@ -67,8 +67,8 @@ export interface Statistics {
 }
 
 export interface Frame {
-  /** Of the camera, in the asset's world; heightPx of the target. */
-  view: View;
+  /** Of the camera, in the asset's world; heightPx of the target. An orthographic view has an eye too: the surface is relative to it. */
+  view: View & { eye: [number, number, number] };
   /** World to clip space, 16 numbers, columns; depths as the pipeline's depthCompare takes them. Doubles keep far places exact. */
   viewProjection: ArrayLike<number>;
 }
@@ -80,7 +80,7 @@ export class Lode {
   readonly isSettled: boolean;
   /** Pages that the last select() chose from: page p is bit p % 32 of word p / 32. */
   readonly resident: Uint32Array;
-  /** Encodes the selection of a frame. Submit it before the next frame's select(). */
+  /** Encodes the selection of a frame. Submit it before the next frame's select(). Throws a LodeError where the view has no eye. */
   select(encoder: GPUCommandEncoder, frame: Frame): void;
   /** Encodes one indirect draw of what the frame selected. Sets the pipeline and bind group 0. */
   draw(pass: GPURenderPassEncoder | GPURenderBundleEncoder): void;

@@ -116,8 +116,14 @@ export class Lode {
     const names = ['tables', 'decode', 'select', 'draw'];
     const [texts] = await Promise.all([Promise.all(names.map(loadText)), opened]);
     this.#device.pushErrorScope('out-of-memory');
-    this.#fill(poolBytes);
-    const missing = await this.#device.popErrorScope();
+    let scope;
+    try {
+      this.#fill(poolBytes);
+    } finally {
+      scope = this.#device.popErrorScope();
+      scope.catch(() => {}); // of a lost device, where #fill() has thrown
+    }
+    const missing = await scope;
     if (missing) throw new LodeError('device', missing.message);
     await this.#compile(Object.fromEntries(names.map((name, i) => [name, texts[i]])));
   }
@@ -255,14 +261,14 @@ export class Lode {
    */
   select(encoder, { view, viewProjection }) {
     if (!this.#groups) return;
+    if (!view.eye) throw new LodeError('camera', 'eye is missing: surfaces are relative to it'); // of an orthographic view too
     for (const message of this.#arrived.splice(0)) this.#apply(message);
     this.#ask(view, viewProjection);
-    const eye = view.eye ?? [0, 0, 0];
     this.#placed.forEach(({ instance, mesh, reach }, i) => {
       const at = INSTANCE_WORDS * i;
       this.#instanceData.set(clipMatrix(viewProjection, instance, mesh), at);
-      this.#instanceData.set(worldRows(eye, instance, mesh), at + 16);
-      this.#instanceData.set(metricView({ ...view, eye }, this.pixelError, instance, mesh, reach), at + 28);
+      this.#instanceData.set(worldRows(view.eye, instance, mesh), at + 16);
+      this.#instanceData.set(metricView(view, this.pixelError, instance, mesh, reach), at + 28);
     });
     const { queue } = this.#device;
     queue.writeBuffer(this.#buffers.instances, 0, this.#instanceData);
