@@ -52,7 +52,7 @@ static void open_head(const char* path) {
   if (meshlode_create_selector(asset, &selector, &error)) stop(path, error.text);
 }
 
-/* 2. A pool of slots as large as the largest page. Clusters are told where their page lies when it has come. */
+/* 2. The pool has slots of one size, that of the largest page. A cluster gets its address when its page arrives. */
 static void make_pool(uint32_t slots) {
   const VkBufferUsageFlags storage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
   gpu_cluster* found;

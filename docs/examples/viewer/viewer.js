@@ -46,7 +46,7 @@ export function say(slider, text) {
   byId(slider).setAttribute('aria-valuetext', text);
 }
 
-/** Gives the reader a file of its own. */
+/** Saves a blob as a download with this name. */
 export function download(blob, name) {
   const link = document.createElement('a');
   const address = URL.createObjectURL(blob);

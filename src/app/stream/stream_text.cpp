@@ -69,8 +69,8 @@ void add_layouts(std::string& out, const StreamReport& report) {
   const Simulation& own = report.simulation;
   const std::string one = number("%.3g", report.view.pixel_error);
   out += "\nlayout, pool and link as in the first line above\n";
-  append_format(out, "%-22s %5s %7s %5s %6s %7s %6s %6s %6s\n", "", "pages", "set MB", "of it", "drawn", "root MB",
-                "alone", "req/s", ("ms, " + one + " px").c_str());
+  append_format(out, "%-22s %5s %7s %5s %6s %7s %6s %6s %6s\n", "", "pages", "set MB", "ratio", "drawn", "root MB",
+                "px", "req/s", ("ms, " + one + " px").c_str());
   add_layout(out, "this asset", report.scene.pages.size(), own.demand, own.runs.front(), own.demand.mean_bytes);
   for (const TriedLayout& tried : report.layouts) {
     add_layout(out, tried.layout.text(), tried.pages, tried.demand, tried.run, own.demand.mean_bytes);

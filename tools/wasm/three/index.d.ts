@@ -1,55 +1,18 @@
 // SPDX-License-Identifier: MIT
 import type { Box3, Camera, Material, Object3D, Object3DEventMap, WebGLRenderer } from 'three';
-import type { Cut, Frustum, PromiseKind, View } from '../index.js';
+import type { Cut, Frustum, View } from '../index.js';
+import type { StreamOptions, StreamStatistics } from '../stream/source.js';
 
-/** A refusal with its place: a range of the file, 'head', 'page 3', 'image 0', 'camera', 'options' or 'worker'. */
-export class LodeError extends Error {
-  readonly place: string;
-  readonly reason: string;
-}
+export { LodeError } from '../stream/source.js';
 
-export interface LodeOptions {
-  /** What a cut may be off on the screen; 1. May be set later: lode.pixelError. */
-  pixelError?: number;
+export interface LodeOptions extends StreamOptions {
   /** Bytes of vertices and indices of resident pages; 256 MiB. The buffers may be larger, and the coarsest geometry is always kept. */
   poolBytes?: number;
-  /** Widens the view volume by this share on each side, for turns faster than an answer; 0.1. */
-  margin?: number;
-  /** false: what is outside the view is drawn too, as shadows and mirrors may want. */
-  isCulled?: boolean;
-  /** What errors cover, of an asset that was built with it. */
-  promise?: PromiseKind;
   /** Reads images of the type image/ktx2: three's KTX2Loader, after detectSupport(). */
   ktx2Loader?: { parse(buffer: ArrayBuffer, onLoad: (texture: any) => void, onError?: (error: any) => void): void };
-  /** Of each request. */
-  headers?: Record<string, string>;
-  credentials?: RequestCredentials;
-  /** Within which 64 KiB of a request have to come; 30,000. Infinity: no limit. */
-  timeoutMs?: number;
-  /** Where a bundler or an origin wants another worker than stream/worker.js of this package. */
-  createWorker?: () => Worker;
-  /** The compiled meshlode.wasm, where it does not lie beside index.js. */
-  module?: WebAssembly.Module;
 }
 
-export interface LodeStatistics {
-  /** Of the last selection, and of all pages so far, in the worker. */
-  selectMs: number;
-  unpackMs: number;
-  /** Memory of the worker's module. */
-  moduleBytes: number;
-  bytesRead: number;
-  fileBytes: number;
-  requests: number;
-  /** Of poolBytes. */
-  poolUsed: number;
-  /** Pages that the view wants and that are not there. */
-  missing: number;
-  /** Pages that could not be had, or are of no use without one that could not. */
-  failed: number;
-  /** Whether more is wanted than the pool holds. */
-  isFull: boolean;
-  isLoading: boolean;
+export interface LodeStatistics extends StreamStatistics {
   pages: number;
   residentPages: number;
   drawnClusters: number;

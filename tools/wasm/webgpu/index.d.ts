@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: MIT
 // GPUDevice and others: of TypeScript's DOM library; before they were in it, of @webgpu/types.
-import type { Cut, PromiseKind, View } from '../index.js';
+import type { Cut, View } from '../index.js';
+import type { StreamOptions, StreamStatistics } from '../stream/source.js';
 
-/** A refusal with its place: a range of the file, 'head', 'page 3', 'camera', 'scene', 'options', 'shader', 'device' or 'worker'. */
-export class LodeError extends Error {
-  readonly place: string;
-  readonly reason: string;
-}
+export { LodeError } from '../stream/source.js';
+
 export interface LodeFault {
   place: string;
   message: string;
@@ -15,7 +13,7 @@ export interface LodeFault {
   page?: number;
 }
 
-export interface LodeOptions {
+export interface LodeOptions extends StreamOptions {
   /** Of the colour target. */
   format: GPUTextureFormat;
   /** Of the depth target; depth24plus. */
@@ -27,44 +25,15 @@ export interface LodeOptions {
   shade?: string;
   /** Of bind groups 1 and up, which `shade` reads. The caller sets them before draw(). */
   bindGroupLayouts?: GPUBindGroupLayout[];
-  /** What a cut may be off, pixels of the target; 1. May be set later: lode.pixelError. */
-  pixelError?: number;
   /** Bytes of decoded pages on the GPU; 64 MiB, and at most three quarters of what the device binds. The coarsest pages are always kept. */
   poolBytes?: number;
-  /** Widens by this share the view for which pages are requested; 0.1. */
-  margin?: number;
-  /** false: what is outside the view is drawn too, as shadows may want. */
-  isCulled?: boolean;
-  /** What errors cover, of an asset that was built with it. */
-  promise?: PromiseKind;
-  headers?: Record<string, string>;
-  credentials?: RequestCredentials;
-  /** Within which 64 KiB of a request have to come; 30,000. */
-  timeoutMs?: number;
-  /** Where a bundler or an origin wants another worker than stream/worker.js of this package. */
-  createWorker?: () => Worker;
-  /** The compiled meshlode.wasm, where it does not lie beside index.js. */
-  module?: WebAssembly.Module;
   /** Of faults after opening; left out, they go to the console. */
   onError?: (fault: LodeFault) => void;
   /** Pages have come: draw now, if you draw on demand. */
   onChange?: () => void;
 }
 
-/** Of the last answer of the worker: see LodeStatistics of meshlode/three. */
-export interface Statistics {
-  selectMs: number;
-  unpackMs: number;
-  moduleBytes: number;
-  bytesRead: number;
-  fileBytes: number;
-  requests: number;
-  poolUsed: number;
-  missing: number;
-  failed: number;
-  isFull: boolean;
-  isLoading: boolean;
-}
+export type Statistics = StreamStatistics;
 
 export interface Frame {
   /** Of the camera, in the asset's world; heightPx of the target. An orthographic view has an eye too: the surface is relative to it. */
