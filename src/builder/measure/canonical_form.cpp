@@ -7,23 +7,19 @@
 #include <numeric>
 #include <span>
 #include <string>
+#include <utility>
 
 #include "base/id_table.h"
 #include "base/ids.h"
 #include "base/parallel.h"
 #include "base/try.h"
+#include "base/unset_vector.h"
 
 namespace meshlode::builder {
 
 namespace {
 
 using Corners = std::array<std::uint32_t, 3>;
-
-std::uint64_t hash_of(const Vec3i& place) {
-  std::uint64_t h = 0;
-  for (int k = 0; k < 3; ++k) h = hash_word(h, static_cast<std::uint32_t>(place[k]));
-  return h;
-}
 
 /// How many places to the left a triangle is turned to be the least of its three turns.
 template <class Triangle>
@@ -72,25 +68,6 @@ void order_cluster(const LodDag& dag, const DagCluster& cluster, std::size_t str
   }
 }
 
-/// Ids of places on the grid: the source's first, then those of coarser levels, by their first use.
-class PositionIds {
- public:
-  explicit PositionIds(std::size_t expected) : table_(expected) { places_.reserve(expected); }
-  std::uint32_t add(const Vec3i& place) {
-    const auto entry = table_.find_or_insert(
-        hash_of(place), static_cast<std::uint32_t>(places_.size()),
-        [&](std::uint32_t other) { return places_[other] == place; },
-        [&](std::uint32_t other) { return hash_of(places_[other]); });
-    if (entry.is_new) places_.push_back(place);
-    return entry.id;
-  }
-  [[nodiscard]] std::uint32_t size() const { return static_cast<std::uint32_t>(places_.size()); }
-
- private:
-  IdTable table_;
-  std::vector<Vec3i> places_;
-};
-
 /// Triangles that are the least of their turns, in order; equal ones in the order of their ids.
 std::vector<std::uint32_t> sorted(std::span<const Corners> triangles, std::size_t position_count) {
   std::vector<std::uint32_t> end(position_count + 1, 0), order(triangles.size());
@@ -121,26 +98,80 @@ struct Turned {
   }
 };
 
-/// Fills position_of_vertex. Returns the ids of the source's exact positions, which are the first.
-std::vector<std::uint32_t> number_positions(const PreparedMesh& mesh, const LodDag& dag, CanonicalForm& form) {
-  PositionIds ids(mesh.exact_on_grid.size() + mesh.exact_on_grid.size() / 8);
-  std::vector<std::uint32_t> of_source(mesh.exact_on_grid.size());
-  std::transform(mesh.exact_on_grid.begin(), mesh.exact_on_grid.end(), of_source.begin(),
-                 [&](const Vec3i& place) { return ids.add(place); });
-  form.position_of_vertex.assign(dag.vertex_position.size(), kNoId);
-  const auto number = [&](std::uint32_t vertex) {
-    std::uint32_t& position = form.position_of_vertex[vertex];
-    if (position == kNoId) position = ids.add(dag.vertex_position[vertex]);
+/// Of a cluster's vertices the order in which its triangles use them, then those of no triangle: of equal vertices all
+/// but one.
+void order_of_use(const CanonicalForm& form, const DagCluster& cluster, std::span<std::uint32_t> use) {
+  std::array<bool, 256> is_used{};
+  std::size_t count = 0;
+  const auto add = [&](std::size_t local) {
+    if (!std::exchange(is_used[local], true)) use[count++] = cluster.first_vertex + static_cast<std::uint32_t>(local);
   };
-  for (const DagCluster& cluster : dag.clusters) {
-    for (std::uint32_t t = cluster.first_triangle; t < cluster.first_triangle + cluster.triangle_count; ++t) {
-      for (const std::uint8_t local : form.triangles[t]) number(cluster.first_vertex + local);
-    }
-    // Of equal vertices all but one are in no triangle here.
-    for (std::uint32_t v = cluster.first_vertex; v < cluster.first_vertex + cluster.vertex_count; ++v) number(v);
+  for (std::uint32_t t = cluster.first_triangle; t < cluster.first_triangle + cluster.triangle_count; ++t) {
+    for (const std::uint8_t local : form.triangles[t]) add(local);
   }
-  form.position_count = ids.size();
-  return of_source;
+  for (std::size_t local = 0; local < cluster.vertex_count; ++local) add(local);
+}
+
+/// Ids of places on the grid in the order of their first use. They are looked up in parts by their hash, each of which
+/// sees its places in that order.
+template <class Place>
+std::vector<std::uint32_t> number_places(std::size_t count, const Place& place) {
+  constexpr std::size_t kParts = 64, kChunk = 16384;
+  const auto hash_of = [&](std::uint32_t use) { return hash_point(place(use)); };
+  const auto part_of = [&](std::uint64_t hash) { return hash >> 58U; };  // tables look at the low bits
+  static_assert(kParts == 1U << (64 - 58));
+  std::vector<std::array<std::uint32_t, kParts>> end(chunk_count(count, kChunk));
+  const auto for_each = [&](const auto& visit) {
+    parallel_for_each_chunk(count, kChunk, [&](std::size_t chunk, std::size_t from, std::size_t to) {
+      for (std::size_t use = from; use < to; ++use) {
+        const auto id = static_cast<std::uint32_t>(use);
+        visit(end[chunk][part_of(hash_of(id))], id);
+      }
+    });
+  };
+  for_each([](std::uint32_t& counted, std::uint32_t) { ++counted; });
+  std::array<std::uint32_t, kParts + 1> start{};
+  std::uint32_t at = 0;
+  for (std::size_t part = 0; part < kParts; ++part) {
+    for (auto& chunk : end) at += std::exchange(chunk[part], at);
+    start[part + 1] = at;
+  }
+  UnsetVector<std::uint32_t> sorted(count);
+  for_each([&](std::uint32_t& next, std::uint32_t use) { sorted[next++] = use; });
+  std::vector<std::uint32_t> ids(count);  // at first the first use of the same place
+  parallel_for_each_index(kParts, 1, [&](std::size_t part) {
+    IdTable table(start[part + 1] - start[part]);
+    for (std::uint32_t i = start[part]; i < start[part + 1]; ++i) {
+      const std::uint32_t use = sorted[i];
+      const Vec3i here = place(use);
+      ids[use] = table
+                     .find_or_insert(
+                         hash_point(here), use, [&](std::uint32_t other) { return place(other) == here; }, hash_of)
+                     .id;
+    }
+  });
+  std::uint32_t next = 0;
+  for (std::uint32_t use = 0; use < count; ++use) ids[use] = ids[use] == use ? next++ : ids[ids[use]];
+  return ids;
+}
+
+/// Fills position_of_vertex: the source's places come first. Returns the ids of the source's exact positions.
+std::vector<std::uint32_t> number_positions(const PreparedMesh& mesh, const LodDag& dag, CanonicalForm& form) {
+  const std::size_t source_count = mesh.exact_on_grid.size(), vertex_count = dag.vertex_position.size();
+  UnsetVector<std::uint32_t> use(vertex_count);
+  parallel_for_each_index(dag.clusters.size(), 64, [&](std::size_t c) {
+    const DagCluster& cluster = dag.clusters[c];
+    order_of_use(form, cluster, std::span(use).subspan(cluster.first_vertex, cluster.vertex_count));
+  });
+  std::vector<std::uint32_t> ids = number_places(source_count + vertex_count, [&](std::size_t i) {
+    return i < source_count ? mesh.exact_on_grid[i] : dag.vertex_position[use[i - source_count]];
+  });
+  form.position_of_vertex.resize(vertex_count);
+  parallel_for_each_index(vertex_count, kLoopGrain,
+                          [&](std::size_t v) { form.position_of_vertex[use[v]] = ids[source_count + v]; });
+  form.position_count = ids.empty() ? 0 : 1 + *std::max_element(ids.begin(), ids.end());
+  ids.resize(source_count);
+  return ids;
 }
 
 /// Fills what is known per source triangle. `of_source`: of number_positions().

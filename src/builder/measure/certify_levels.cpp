@@ -54,11 +54,11 @@ struct SearchedCluster {
 
 class Certifier {
  public:
-  Certifier(const PreparedMesh& mesh, const CanonicalForm& form, LodDag& dag)
+  Certifier(const PreparedMesh& mesh, SourceTree source, const CanonicalForm& form, LodDag& dag)
       : mesh_(mesh),
         form_(form),
         dag_(dag),
-        source_(mesh.exact_positions, mesh.exact_triangles),
+        source_(std::move(source)),
         made_of_(clusters_made_of_groups(dag)),
         bounds_(dag.triangles.size()) {
     for (std::size_t t = 0; t < mesh.exact_triangles.size(); ++t) {
@@ -119,8 +119,8 @@ class Certifier {
 
 }  // namespace
 
-void certify_levels(const PreparedMesh& mesh, const CanonicalForm& form, LodDag& dag) {
-  Certifier(mesh, form, dag).run();
+void certify_levels(const PreparedMesh& mesh, SourceTree source, const CanonicalForm& form, LodDag& dag) {
+  Certifier(mesh, std::move(source), form, dag).run();
 }
 
 }  // namespace meshlode::builder

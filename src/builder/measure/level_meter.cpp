@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "builder/measure/level_meter.h"
 
+#include <utility>
+
 #include "base/parallel.h"
 #include "base/release.h"
 #include "builder/measure/group_attributes.h"
@@ -24,15 +26,16 @@ std::vector<std::uint32_t> level0_clusters(CanonicalForm& form) {
 
 }  // namespace
 
-LevelMeter::LevelMeter(const PreparedMesh& mesh, CanonicalForm& form, double margin, LodDag& dag)
+LevelMeter::LevelMeter(const PreparedMesh& mesh, SourceTree source, CanonicalForm& form, double margin, LodDag& dag)
     : mesh_(mesh),
       margin_(margin),
       form_(form),
       dag_(dag),
-      source_(mesh.exact_positions, mesh.exact_triangles),
-      units_(source_.impl(), level0_clusters(form), dag.clusters.size()),
+      source_(std::move(source)),
       outputs_(dag.groups.size()),
       units_of_(dag.clusters.size()) {
+  parallel_all([&] { units_ = SourceUnits(source_.impl(), level0_clusters(form), dag.clusters.size()); },
+               [&] { find_new_vertices(); });
   for (std::uint32_t c = 0; c < dag.clusters.size(); ++c) {
     if (dag.clusters[c].own_group.is_valid()) outputs_[dag.clusters[c].own_group.value].push_back(c);
     for (std::uint32_t u = units_.first_unit(c); u < units_.end_unit(c); ++u) {
@@ -40,7 +43,6 @@ LevelMeter::LevelMeter(const PreparedMesh& mesh, CanonicalForm& form, double mar
       owner_.resize(owner_.size() + units_.units()[u].vertex_count, c);
     }
   }
-  find_new_vertices();
 }
 
 void LevelMeter::find_new_vertices() {

@@ -33,9 +33,9 @@ namespace meshlode::builder {
 
 class LevelMeter {
  public:
-  /// `form` is the DAG's, whose triangles are in its order. What it is given must outlive it, but for
-  /// level0_of_source, which is freed.
-  LevelMeter(const PreparedMesh& mesh, CanonicalForm& form, double margin, LodDag& dag);
+  /// `source` is the tree over the mesh's exact triangles; `form` is the DAG's, whose triangles are in its order. What
+  /// it is given must outlive it, but for level0_of_source, which is freed.
+  LevelMeter(const PreparedMesh& mesh, SourceTree source, CanonicalForm& form, double margin, LodDag& dag);
 
   /// All groups of a level; finer ones are measured.
   void measure_level(std::uint32_t first_group, std::uint32_t end_group);

@@ -3,9 +3,12 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
+#include <utility>
 
+#include "base/parallel.h"
 #include "base/release.h"
-#include "base/try.h"
+#include "builder/deviation/deviation.h"
 #include "builder/measure/canonical_form.h"
 #include "builder/measure/certify_levels.h"
 #include "builder/measure/measure_levels.h"
@@ -43,13 +46,17 @@ Status measure(const PreparedMesh& mesh, format::ErrorTier tier, LodDag& dag, co
       std::any_of(dag.groups.begin(), dag.groups.end(), [](const DagGroup& group) { return group.is_aggregate; });
   if (is_aggregate) add_margin(tier, dag);
   if (is_aggregate || tier == format::ErrorTier::kQem || dag.triangles.empty()) return Ok{};
-  TRY_LET(form, canonical_form(mesh, dag));
+  Result<CanonicalForm> form = CanonicalForm{};
+  std::optional<SourceTree> source;
+  parallel_all([&] { form = canonical_form(mesh, dag); },
+               [&] { source.emplace(mesh.exact_positions, mesh.exact_triangles); });
+  if (!form) return form.error();
   on_form();
   dag.triangles.swap(form->triangles);
   if (tier == format::ErrorTier::kCertified) {
-    certify_levels(mesh, *form, dag);
+    certify_levels(mesh, *std::move(source), *form, dag);
   } else {
-    measure_levels(mesh, *form, kMeasuredMargin, dag);
+    measure_levels(mesh, *std::move(source), *form, kMeasuredMargin, dag);
   }
   dag.triangles.swap(form->triangles);
   return Ok{};

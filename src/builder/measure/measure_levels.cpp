@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "builder/measure/measure_levels.h"
 
-#include <algorithm>
-#include <vector>
+#include <utility>
 
 #include "builder/measure/level_meter.h"
 
 namespace meshlode::builder {
 
-void measure_levels(const PreparedMesh& mesh, CanonicalForm& form, double margin, LodDag& dag) {
-  LevelMeter meter(mesh, form, margin, dag);
+void measure_levels(const PreparedMesh& mesh, SourceTree source, CanonicalForm& form, double margin, LodDag& dag) {
+  LevelMeter meter(mesh, std::move(source), form, margin, dag);
   for (std::size_t end = dag.groups.size(); end > 0;) {
     std::size_t begin = end - 1;
     while (begin > 0 && dag.groups[begin - 1].level == dag.groups[begin].level) --begin;

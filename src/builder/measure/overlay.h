@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "base/ids.h"
+#include "base/parallel.h"
 #include "base/unset_vector.h"
 #include "builder/deviation/point_distance.h"
 #include "builder/deviation/surface_tree.h"
@@ -61,23 +62,25 @@ template <class Id>
       neighbor[k][e] = std::exchange(first[std::min(ids[e], ids[(e + 1) % 3])], 4 * k + e);
     }
   }
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;  // other end, edge
-  for (std::uint32_t from = 0; from < id_count; ++from) {
-    edges.clear();
-    for (std::uint32_t edge = first[from]; edge != kNoId;) {
-      const LinkedSurface::Triangle& t = triangles[edge / 4];
-      edges.emplace_back(std::max(id(t[edge % 4]), id(t[(edge % 4 + 1) % 3])), edge);
-      edge = std::exchange(neighbor[edge / 4][edge % 4], kNoId);
+  parallel_for_each_chunk(id_count, kLoopGrain, [&](std::size_t, std::size_t begin, std::size_t last) {
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;  // other end, edge
+    for (std::size_t from = begin; from < last; ++from) {
+      edges.clear();
+      for (std::uint32_t edge = first[from]; edge != kNoId;) {
+        const LinkedSurface::Triangle& t = triangles[edge / 4];
+        edges.emplace_back(std::max(id(t[edge % 4]), id(t[(edge % 4 + 1) % 3])), edge);
+        edge = std::exchange(neighbor[edge / 4][edge % 4], kNoId);
+      }
+      std::sort(edges.begin(), edges.end());
+      for (std::size_t i = 0, end = 0; i < edges.size(); i = end) {
+        while (end < edges.size() && edges[end].first == edges[i].first) ++end;
+        if (end - i != 2) continue;
+        const std::uint32_t a = edges[i].second, b = edges[i + 1].second;
+        neighbor[a / 4][a % 4] = b;
+        neighbor[b / 4][b % 4] = a;
+      }
     }
-    std::sort(edges.begin(), edges.end());
-    for (std::size_t i = 0, end = 0; i < edges.size(); i = end) {
-      while (end < edges.size() && edges[end].first == edges[i].first) ++end;
-      if (end - i != 2) continue;
-      const std::uint32_t a = edges[i].second, b = edges[i + 1].second;
-      neighbor[a / 4][a % 4] = b;
-      neighbor[b / 4][b % 4] = a;
-    }
-  }
+  });
   return neighbor;
 }
 

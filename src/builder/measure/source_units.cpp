@@ -51,6 +51,11 @@ void halve(std::span<std::uint32_t> triangles, const SourceTree::Impl& source, c
 
 SourceUnits::SourceUnits(const SourceTree::Impl& source, std::span<const std::uint32_t> cluster_of,
                          std::size_t cluster_count) {
+  parallel_all([&] { find_borders(source); }, [&] { divide(source, cluster_of, cluster_count); });
+}
+
+void SourceUnits::divide(const SourceTree::Impl& source, std::span<const std::uint32_t> cluster_of,
+                         std::size_t cluster_count) {
   std::vector<std::uint32_t> first(cluster_count + 1, 0);
   for (const std::uint32_t c : cluster_of) ++first[c + 1];
   std::partial_sum(first.begin(), first.end(), first.begin());
@@ -77,7 +82,6 @@ SourceUnits::SourceUnits(const SourceTree::Impl& source, std::span<const std::ui
       first_unit_[c + 1] += static_cast<std::uint32_t>(units_.size());
     append(std::move(blocks[b]));
   }
-  find_borders(source);
 }
 
 void SourceUnits::append(Block&& block) {

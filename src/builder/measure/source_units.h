@@ -28,6 +28,7 @@ class SourceUnits {
     std::array<std::uint8_t, 3> corner{};  ///< among the unit's vertices
   };
 
+  SourceUnits() = default;
   /// `cluster_of`: of level 0, per source triangle. Units come in the order of their clusters.
   SourceUnits(const SourceTree::Impl& source, std::span<const std::uint32_t> cluster_of, std::size_t cluster_count);
 
@@ -53,6 +54,7 @@ class SourceUnits {
 
     void add_unit(const SourceTree::Impl& source, std::span<const std::uint32_t> triangles_of_unit);
   };
+  void divide(const SourceTree::Impl& source, std::span<const std::uint32_t> cluster_of, std::size_t cluster_count);
   void append(Block&& block);
   void find_borders(const SourceTree::Impl& source);
 

@@ -34,7 +34,7 @@ void measure(HandMade& made) {
   Result<CanonicalForm> form = canonical_form(made.mesh, made.dag);
   ASSERT_TRUE(form) << form.error().message();
   made.dag.triangles = form->triangles;
-  measure_levels(made.mesh, *form, 1.0, made.dag);
+  measure_levels(made.mesh, SourceTree(made.mesh.exact_positions, made.mesh.exact_triangles), *form, 1.0, made.dag);
 }
 double error_of(HandMade made) {
   measure(made);
