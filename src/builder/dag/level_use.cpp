@@ -61,18 +61,26 @@ LevelUse use_of_level(const BuildPool& pool, const std::vector<ClusterId>& live,
     const auto wedges = static_cast<std::uint32_t>(uses[i].wedges.size());
     use.grouping.weights[i] = options.cluster_bytes(wedges, pool.cluster(live[i]).triangle_count, uses[i].materials);
   });
-  join_lists(uses, &BuildPool::ClusterUse::positions, pool.positions.size(), use.dense_positions,
-             use.grouping.first_position, use.grouping.positions);
+  parallel_all(
+      [&] {
+        join_lists(uses, &BuildPool::ClusterUse::positions, pool.positions.size(), use.dense_positions,
+                   use.grouping.first_position, use.grouping.positions);
+      },
+      [&] {
+        join_lists(uses, &BuildPool::ClusterUse::wedges, pool.wedge_position.size(), use.dense_wedges, use.first_wedge,
+                   use.wedges);
+      });
   use.grouping.position_count = use.dense_positions.count();
-  join_lists(uses, &BuildPool::ClusterUse::wedges, pool.wedge_position.size(), use.dense_wedges, use.first_wedge,
-             use.wedges);
   return use;
 }
 
-Shared::Shared(const LevelUse& use, const std::vector<std::vector<std::uint32_t>>& groups)
-    : use_(use),
-      is_position_shared_(
-          find_shared(use.grouping.first_position, use.grouping.positions, use.dense_positions.count(), groups)),
-      is_wedge_shared_(find_shared(use.first_wedge, use.wedges, use.dense_wedges.count(), groups)) {}
+Shared::Shared(const LevelUse& use, const std::vector<std::vector<std::uint32_t>>& groups) : use_(use) {
+  parallel_all(
+      [&] {
+        is_position_shared_ =
+            find_shared(use.grouping.first_position, use.grouping.positions, use.dense_positions.count(), groups);
+      },
+      [&] { is_wedge_shared_ = find_shared(use.first_wedge, use.wedges, use.dense_wedges.count(), groups); });
+}
 
 }  // namespace meshlode::builder
