@@ -44,22 +44,7 @@ std::vector<Variant> all_variants() {
   add("plan", [](auto&) {});
   add("no-occlusion", [](auto& r) { r.occlusion = false; });
   add("no-culling", [](auto& r) { r.occlusion = r.frustum = false; });
-  add("flat", [](auto& r) {
-    r.occlusion = false;
-    r.flat_selection = true;
-  });
   add("persistent", [](auto& r) { r.persistent = true; });
-  add("second-by-depth", [](auto& r) { r.persistent_second = false; });
-  add("no-far", [](auto& r) { r.far_instances = false; });
-  add("no-far-persistent", [](auto& r) {
-    r.far_instances = false;
-    r.persistent = true;
-  });
-  add("no-far-raster", [](auto& r) { r.far_raster = false; });
-  add("far-64", [](auto& r) { r.far_lanes = 64; });
-  add("far-16", [](auto& r) { r.far_lanes = 16; });
-  add("group-32", [](auto& r) { r.raster_group = 32; });
-  add("group-64", [](auto& r) { r.raster_group = 64; });
   add("mixed-vertex", [](auto& r) { r.hardware = draw::HardwarePath::kVertex; });
   add("hardware-vertex", [](auto& r) {
     r.hardware = draw::HardwarePath::kVertex;

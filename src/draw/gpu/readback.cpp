@@ -31,19 +31,17 @@ Result<std::vector<Renderer::Item>> Renderer::read_items() {
   TRY_LET(visible, read_visible());
   const std::uint32_t front = std::min(counters->stages[STAGE_SOFTWARE].count, frame_.item_capacity);
   const std::uint32_t back = std::min(counters->stages[STAGE_HARDWARE].count, frame_.item_capacity - front);
-  std::vector<std::array<std::uint32_t, 2>> pairs(std::size_t{front} + back);
-  const std::span<std::uint8_t> bytes(reinterpret_cast<std::uint8_t*>(pairs.data()), pairs.size() * 8);
-  TRY(device_.download(items_, bytes.first(std::size_t{front} * 8)));
-  if (const Status s = device_.download(items_, bytes.subspan(std::size_t{front} * 8),
-                                        std::uint64_t{frame_.item_capacity - back} * 8);
-      !s) {
-    return s.error();
-  }
+  std::vector<GpuItem> items(std::size_t{front} + back);
+  const std::span<std::uint8_t> bytes(reinterpret_cast<std::uint8_t*>(items.data()), items.size() * sizeof(GpuItem));
+  TRY(device_.download(items_, bytes.first(front * sizeof(GpuItem))));
+  TRY(device_.download(items_, bytes.subspan(front * sizeof(GpuItem)),
+                       (frame_.item_capacity - back) * sizeof(GpuItem)));
   std::vector<Item> out;
-  for (std::uint32_t i = 0; i < pairs.size(); ++i) {
-    const auto& [marked_slot, cluster] = pairs[i];
+  for (std::uint32_t i = 0; i < items.size(); ++i) {
+    const auto& [marked_slot, cluster, view] = items[i];
     const std::uint32_t slot = marked_slot & ITEM_SLOT;
     if (slot >= visible->size()) return Error{ErrorCode::kCheckFailed, "items", "a slot that no instance has"};
+    if (view != 0) return Error{ErrorCode::kCheckFailed, "items", "a view that the frame does not have"};
     const std::uint32_t place = i < front ? i : frame_.item_capacity - back + (i - front);
     out.push_back({{InstanceId((*visible)[slot].instance), ClusterId(cluster)}, marked_slot, place});
   }
@@ -66,11 +64,11 @@ Status Renderer::redraw_in_order() {
   // Both ends of the list become one, in order.
   TRY_LET(list, Commands::begin(device_));
   if (back > 0) {
-    auto rest = device_.make_buffer(std::uint64_t{back} * 8, Memory::kDevice);  // the two places may overlap
-    if (!rest) return rest.error();
-    list->copy(items_, std::uint64_t{frame_.item_capacity - back} * 8, *rest, 0, std::uint64_t{back} * 8);
+    const std::uint64_t bytes = back * sizeof(GpuItem);
+    TRY_LET(rest, device_.make_buffer(bytes, Memory::kDevice));  // the two places may overlap
+    list->copy(items_, (frame_.item_capacity - back) * sizeof(GpuItem), *rest, 0, bytes);
     list->barrier();
-    list->copy(*rest, 0, items_, std::uint64_t{front} * 8, std::uint64_t{back} * 8);
+    list->copy(*rest, 0, items_, front * sizeof(GpuItem), bytes);
     list->barrier();
   }
   for (std::uint32_t run = 1; run < count; run *= 2) {
@@ -125,7 +123,8 @@ Result<VisibilityBuffer> Renderer::read_pixels_of_cut() {
 Result<Renderer::Resolved> Renderer::resolve(std::uint32_t view, std::uint32_t level_count) {
   const std::array<std::uint32_t, 4> constants = {0, 0, 0, view};
   const bool is_textured = scene_.surfaces && (view == VIEW_SHADED || view == VIEW_NORMALS);
-  TRY_LET(pipeline, device_.make_compute(is_textured ? shaders::resolve_textures() : shaders::resolve(), constants));
+  TRY_LET(pipeline,
+          device_.make_compute(find_shader(is_textured ? "resolve_textures.comp" : "resolve.comp"), constants));
   TRY_LET(list, Commands::begin(device_));
   const Push push{frame_block_.address(), 0, 0, 0, level_count};
   list->stamp("begin");

@@ -3,24 +3,22 @@
 
 #include <algorithm>
 #include <array>
-#include <cstddef>
 #include <cstring>
 
 #include "base/try.h"
 #include "draw/gpu/gpu_camera.h"
-#include "draw/gpu/push.h"
+#include "draw/gpu/passes/pass.h"
 #include "draw/gpu/shaders.h"
 
 namespace meshlode::draw {
 
 namespace {
 
-constexpr std::uint32_t kPersistentGroups = 1024;  ///< more than any device runs at once do no harm: they find nothing
-constexpr std::uint32_t kSecondGroups = 256;       ///< what last frame's depth hid is little work
+static_assert(FRAME_LAYOUT_VERSION == 1, "the frame is filled, and its counters are read, as in this version");
 
-std::uint64_t arguments_of(std::uint32_t stage) {
-  return offsetof(GpuCounters, stages) + sizeof(GpuStage) * stage + offsetof(GpuStage, x);
-}
+/// In the order of a frame.
+constexpr const Pass* kPasses[] = {&kInstancesPass, &kTraversePass, &kPersistentPass, &kClustersPass, &kSoftwarePass,
+                                   &kFarPass,       &kClippedPass,  &kHardwarePass,   &kPyramidPass};
 
 std::uint32_t round_up(std::uint64_t value, std::uint64_t limit) {
   return static_cast<std::uint32_t>(std::min<std::uint64_t>((value + 63) / 64 * 64, limit));
@@ -43,9 +41,10 @@ Result<Renderer> Renderer::make(Device device, GpuScene scene, const RendererOpt
   out.device_ = std::move(device);
   out.scene_ = std::move(scene);
   out.options_ = options;
-  TRY(out.make_pipelines());
+  TRY_LET(sort, out.device_.make_compute(find_shader("sort.comp"), {}));
+  out.sort_ = *sort;
   TRY(out.resize(options.width, options.height));
-  if (out.has_far_raster()) {
+  if (has_far_raster(options)) {
     TRY(out.decode_roots());
   }
   return out;
@@ -106,9 +105,9 @@ Status Renderer::make_buffers() {
       {&frame_block_, sizeof(GpuFrame)},
       {&counters_block_, sizeof(GpuCounters)},
       {&visible_, std::uint64_t{f.slot_capacity} * sizeof(GpuVisible)},
-      {&queue_, std::uint64_t{f.queue_capacity} * queue_parts() * 8},
+      {&queue_, std::uint64_t{f.queue_capacity} * queue_parts(options_) * 8},
       {&open_groups_, std::uint64_t{f.group_capacity} * 8},
-      {&items_, std::uint64_t{f.item_capacity} * 8},
+      {&items_, std::uint64_t{f.item_capacity} * sizeof(GpuItem)},
       {&retry_nodes_, std::uint64_t{f.retry_capacity} * 8},
       {&retry_clusters_, std::uint64_t{f.retry_capacity} * 8},
       {&retry_instances_, std::uint64_t{options_.occlusion ? f.instance_count : 1} * 4},
@@ -168,71 +167,20 @@ void Renderer::set_addresses() {
   f.counters = counters_block_.address();
 }
 
-// With hardware raster every cluster is asked for its size on the screen; flat selection asks every instance.
-bool Renderer::has_far() const {
-  return options_.far_instances && options_.hardware == HardwarePath::kNone && !options_.flat_selection;
-}
-// The dispatches of single depths fill two parts in turn; the persistent traversal keeps one of its own empty.
-std::uint32_t Renderer::queue_parts() const {
-  return options_.occlusion && options_.persistent_second && !options_.persistent ? 3 : 2;
-}
-bool Renderer::has_far_raster() const {
-  return has_far() && options_.far_raster && !options_.streams;
+/// The specialization constants of all shaders, by their ids: each reads those that it has.
+std::array<std::uint32_t, 10> Renderer::specialization() const {
+  const auto room = [](std::uint32_t count) { return std::max((count + 15) / 16 * 16, 16U); };
+  return {options_.double_sided ? 1U : 0U,   options_.frustum ? 1U : 0U,
+          options_.occlusion ? 1U : 0U,      options_.hardware != HardwarePath::kNone ? 1U : 0U,
+          room(scene_.max_root_vertices),    room(scene_.max_cluster_triangles),
+          room(scene_.max_cluster_vertices), room(scene_.max_root_triangles),
+          options_.overdraw ? 1U : 0U,       options_.streams ? 1U : 0U};
 }
 
-Status Renderer::make_pipelines() {
-  const bool has_hardware = options_.hardware != HardwarePath::kNone;
-  const std::uint32_t frustum = options_.frustum ? 1 : 0, occlusion = options_.occlusion ? 1 : 0;
-  const auto room = [](std::uint32_t count) { return std::max((count + 15) / 16 * 16, 16u); };
-  const std::array<std::uint32_t, 10> constants = {options_.double_sided ? 1u : 0u,
-                                                   frustum,
-                                                   occlusion,
-                                                   has_hardware ? 1u : 0u,
-                                                   options_.raster_group,
-                                                   room(scene_.max_cluster_triangles),
-                                                   room(scene_.max_cluster_vertices),
-                                                   0,
-                                                   options_.overdraw ? 1u : 0u,
-                                                   options_.streams ? 1u : 0u};
-  std::array<std::uint32_t, 10> far_constants = constants;
-  far_constants[3] = has_far() ? 1 : 0;
-  far_constants[4] = options_.far_lanes;
-  far_constants[5] = has_far_raster() ? 1 : 0;
-  far_constants[6] = room(scene_.max_root_vertices);
-  far_constants[7] = room(scene_.max_root_triangles);
-  const bool is_masked = options_.alpha_mask;
-  struct Wanted {
-    Pipeline* slot;
-    std::span<const std::uint32_t> spirv;
-  };
-  const Wanted wanted[] = {{&instances_, shaders::instances()},
-                           {&traverse_, shaders::traverse()},
-                           {&persistent_, shaders::persistent()},
-                           {&flat_, shaders::flat()},
-                           {&clusters_, shaders::clusters()},
-                           {&raster_, is_masked ? shaders::raster_mask() : shaders::raster()},
-                           {&sort_, shaders::sort()},
-                           {&raster_far_, is_masked ? shaders::raster_far_mask() : shaders::raster_far()},
-                           {&roots_, shaders::roots()},
-                           {&raster_clip_, is_masked ? shaders::raster_clip_mask() : shaders::raster_clip()},
-                           {&pyramid_build_, shaders::pyramid()}};
-  for (const Wanted& w : wanted) {
-    const bool is_far = w.slot == &instances_ || w.slot == &raster_far_;
-    TRY_LET(pipeline, device_.make_compute(w.spirv, is_far ? far_constants : constants));
-    *w.slot = *pipeline;
-  }
-  if (!has_hardware) return Ok{};
-  const bool is_mesh = options_.hardware == HardwarePath::kMesh;
-  if (is_mesh && !device_.info().has_mesh_shaders) {
-    return Error{ErrorCode::kUnsupported, device_.info().name, "no mesh shaders"};
-  }
-  const std::span<const std::uint32_t> fragments[] = {shaders::hardware_frag(), shaders::hardware_mesh_frag(),
-                                                      shaders::hardware_mask_frag(),
-                                                      shaders::hardware_mesh_mask_frag()};
-  TRY_LET(draw, device_.make_draw(is_mesh ? shaders::hardware_mesh() : shaders::hardware_vert(),
-                                  fragments[(is_masked ? 2 : 0) + (is_mesh ? 1 : 0)], constants, is_mesh));
-  hardware_ = *draw;
-  return Ok{};
+Result<Pipeline> Renderer::make_pipeline(const Pass& pass) {
+  if (pass.make != nullptr) return pass.make(device_, options_, specialization());
+  const bool is_masked = options_.alpha_mask && pass.masked != nullptr;
+  return device_.make_compute(find_shader(is_masked ? pass.masked : pass.shader), specialization());
 }
 
 void Renderer::record_begin(Commands& list) {
@@ -242,109 +190,44 @@ void Renderer::record_begin(Commands& list) {
   list.fill(pixels_, 0, pixels_.bytes(), 0);
   if (options_.streams) list.fill(scene_.priorities, 0, scene_.priorities.bytes(), 0);
   if (options_.overdraw) list.fill(overdraw_, 0, overdraw_.bytes(), 0);
-  list.barrier();
   list.stamp("clear");
 }
 
-void Renderer::record_selection(Commands& list, std::uint32_t pass) {
-  const char* suffix = pass == 0 ? "" : " 2";
-  Push push{frame_block_.address(), pass};
-  if (pass == 0) {
-    list.dispatch(instances_, bytes_of(push), (scene_.instance_count + kGroupSize - 1) / kGroupSize);
-  } else {
-    list.dispatch_indirect(instances_, bytes_of(push), counters_block_, arguments_of(STAGE_RETRY_INSTANCES));
-    push.a = 1;
-    list.dispatch_indirect(clusters_, bytes_of(push), counters_block_, arguments_of(STAGE_RETRY_CLUSTERS));
-    push.a = 0;
+Status Renderer::record_round(Commands& list, Round round) {
+  pipelines_.resize(std::size(kPasses));
+  for (std::size_t i = 0; i < pipelines_.size(); ++i) {
+    const Pass& pass = *kPasses[i];
+    if (!pass.runs(options_, round)) continue;
+    if (!pipelines_[i]) {
+      TRY_LET(pipeline, make_pipeline(pass));
+      pipelines_[i] = *pipeline;
+    }
+    if (pass.waits) list.barrier();
+    pass.record({list, pipelines_[i], round, options_, scene_, frame_, frame_block_, counters_block_});
+    list.stamp(std::string(pass.name) + (round == Round::kSecond ? " 2" : ""));
   }
-  list.barrier();
-  list.stamp(std::string("instances") + suffix);
-  if (options_.flat_selection) {
-    list.dispatch_indirect(flat_, bytes_of(push), counters_block_, arguments_of(STAGE_SLOTS));
-    list.barrier();
-  }
-  const bool is_persistent = options_.persistent || (pass == 1 && options_.persistent_second);
-  if (is_persistent && !options_.flat_selection) {
-    push.a = queue_parts() - 1;
-    list.dispatch(persistent_, bytes_of(push), pass == 0 ? kPersistentGroups : kSecondGroups);
-    push.a = 0;
-    list.barrier();
-  }
-  // The leaves of the last depth are tested with the nodes above them.
-  const std::uint32_t depths = options_.flat_selection || is_persistent ? 0 : std::max(scene_.bvh_depth, 2u) - 1;
-  for (push.depth = 0; push.depth < depths; ++push.depth) {
-    list.dispatch_indirect(traverse_, bytes_of(push), counters_block_,
-                           arguments_of(STAGE_QUEUE + MAX_DEPTH * pass + push.depth));
-    list.barrier();
-  }
-  list.stamp(std::string("traverse") + suffix);
-  list.dispatch_indirect(clusters_, bytes_of(push), counters_block_, arguments_of(STAGE_GROUPS + pass));
-  list.barrier();
-  list.stamp(std::string("clusters") + suffix);
-}
-
-void Renderer::record_raster(Commands& list, std::uint32_t pass, bool in_order) {
-  const Push push{frame_block_.address(), pass, 0, in_order ? 1u : 0u};
-  list.dispatch_indirect(raster_, bytes_of(push), counters_block_, arguments_of(STAGE_SOFTWARE + pass));
-  if (has_far_raster()) {
-    // They write pixels by atomicMax alone, so nobody waits for anybody.
-    list.stamp(pass == 0 ? "software" : "software 2");
-    list.dispatch_indirect(raster_far_, bytes_of(push), counters_block_, arguments_of(STAGE_HARDWARE + pass));
-    list.barrier();
-    list.stamp(pass == 0 ? "far" : "far 2");
-  } else {
-    list.barrier();
-    list.stamp(pass == 0 ? "software" : "software 2");
-  }
-  list.dispatch_indirect(raster_clip_, bytes_of(push), counters_block_, arguments_of(STAGE_CLIPPED + pass));
-  if (options_.hardware != HardwarePath::kNone) {
-    list.stamp(pass == 0 ? "clipped" : "clipped 2");
-    const bool is_mesh = options_.hardware == HardwarePath::kMesh;
-    const std::uint64_t arguments =
-        is_mesh ? arguments_of(STAGE_HARDWARE + pass) : arguments_of(STAGE_DRAW + pass) - offsetof(GpuStage, x);
-    list.draw_indirect(hardware_, bytes_of(push), counters_block_, arguments, frame_.width, frame_.height);
-    list.barrier();
-    list.stamp(pass == 0 ? "hardware" : "hardware 2");
-    return;
-  }
-  list.barrier();
-  list.stamp(pass == 0 ? "clipped" : "clipped 2");
-}
-
-void Renderer::record_pyramid(Commands& list) {
-  const Push push{frame_block_.address()};
-  const std::uint32_t tiles = ((frame_.width + 63) / 64) * ((frame_.height + 63) / 64);
-  list.dispatch(pyramid_build_, bytes_of(push), tiles);
-  list.barrier();
-  list.stamp("pyramid");
+  return Ok{};
 }
 
 Status Renderer::record() {
   for (int i = 0; i < 2; ++i) {
     TRY_LET(list, Commands::begin(device_));
     lists_.push_back(*list);
+    record_begin(*list);
   }
-  Commands& list = lists_[0];
-  record_begin(list);
-  record_selection(list, 0);
-  record_raster(list, 0);
-  if (options_.occlusion) {
-    // The next frame's first pass is tested against this pyramid too: what the second pass drew is not in it, so it
-    // hides less than it could, never more. One more pyramid costs more than the few clusters that it would hide.
-    record_pyramid(list);
-    record_selection(list, 1);
-    record_raster(list, 1);
-  }
-  record_begin(lists_[1]);
-  record_raster(lists_[1], 0, true);
+  TRY(record_round(lists_[0], Round::kFirst));
+  if (options_.occlusion) TRY(record_round(lists_[0], Round::kSecond));
+  TRY(record_round(lists_[1], Round::kInOrder));
+  for (Commands& list : lists_) list.barrier();
   return clear_lists();
 }
 
 Status Renderer::decode_roots() {
   if (const Status s = device_.upload(frame_block_, bytes_of(frame_)); !s) return s;
   TRY_LET(list, Commands::begin(device_));
+  TRY_LET(roots, device_.make_compute(find_shader("roots.comp"), specialization()));
   const Push push{frame_block_.address()};
-  list->dispatch(roots_, bytes_of(push), scene_.mesh_count);
+  list->dispatch(*roots, bytes_of(push), scene_.mesh_count);
   list->barrier();
   TRY(list->run());
   return Ok{};
@@ -354,8 +237,8 @@ Status Renderer::clear_lists() {
   TRY_LET(clear, Commands::begin(device_));
   if (options_.occlusion)
     clear->fill(pyramid_, 0, pyramid_.bytes(), 0);  // before the first frame nothing hides anything
-  // Places that nobody has filled.
-  if (options_.persistent || options_.persistent_second) clear->fill(queue_, 0, queue_.bytes(), 0);
+  // Places that nobody has filled, of the persistent traversal.
+  clear->fill(queue_, 0, queue_.bytes(), 0);
   clear->barrier();
   TRY(clear->run());
   return Ok{};
@@ -377,14 +260,14 @@ Result<FrameReport> Renderer::draw(const run::Camera& camera, double pixel_error
   out.items = counters->stages[STAGE_SOFTWARE].count + counters->stages[STAGE_HARDWARE].count;
   if (options_.occlusion)
     out.second_pass_items = out.items - counters->software_before[1] - counters->hardware_before[1];
-  (has_far_raster() ? out.far_items : out.hardware_items) = counters->stages[STAGE_HARDWARE].count;
+  (has_far_raster(options_) ? out.far_items : out.hardware_items) = counters->stages[STAGE_HARDWARE].count;
   out.clipped_items = counters->stages[STAGE_CLIPPED].count + counters->stages[STAGE_CLIPPED + 1].count;
   for (std::uint32_t i = STAGE_QUEUE; i < STAGE_COUNT; ++i) out.traversed_nodes += counters->stages[i].count;
   out.not_finite = counters->not_finite;
   out.overflow = counters->overflow;
   for (const std::uint32_t added : counters->added) out.traversed_nodes += added;
   if (out.items > frame_.item_capacity) out.overflow |= OVERFLOW_CLUSTERS;  // both ends together
-  if ((options_.persistent || options_.persistent_second) && (out.overflow & OVERFLOW_QUEUE) != 0) {
+  if ((out.overflow & OVERFLOW_QUEUE) != 0) {
     TRY(clear_lists());  // places may be left that nobody took
     has_last_ = false;
   }

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The frame: instances → BVH traversal with the LOD rule → clusters → software and hardware rasterizers → depth
-// pyramid, and with occlusion culling once more for what last frame's depth had hidden. Which passes run is the plan's
-// decision.
+// pyramid, and with occlusion culling once more for what last frame's depth had hidden. The passes are in passes/;
+// which of them run is the plan's decision.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -29,15 +30,9 @@ struct RendererOptions {
   std::uint32_t width = 0, height = 0;
   bool frustum = true;
   bool occlusion = false;
-  bool double_sided = false;      ///< some material is; where none is, nobody looks
-  bool alpha_mask = false;        ///< some sample of a masked material may be missing: without, they are drawn opaque
-  bool flat_selection = false;    ///< every group of every instance instead of the BVH; not with occlusion
-  bool persistent = false;        ///< the BVH in one dispatch with a queue, instead of one dispatch a depth
-  bool persistent_second = true;  ///< so in the second pass of occlusion culling, which has little to do at each depth
-  bool far_instances = true;      ///< where a mesh's root alone is open, its instance goes past the BVH
-  bool far_raster = true;         ///< and is drawn by a rasterizer of its own where it has a few pixels
-  std::uint32_t raster_group = 128;  ///< invocations of the software rasterizer's workgroup: 32, 64 or 128
-  std::uint32_t far_lanes = 32;      ///< invocations a far root is drawn by: 16, 32, 64 or 128
+  bool double_sided = false;  ///< some material is; where none is, nobody looks
+  bool alpha_mask = false;    ///< some sample of a masked material may be missing: without, they are drawn opaque
+  bool persistent = false;    ///< the BVH in one dispatch with a queue, in the first round too
   bool streams = false;   ///< the scene has a pool of pages (page_pool.h); far roots are not drawn from decoded ones
   bool overdraw = false;  ///< count how often each pixel is drawn, for that view
   HardwarePath hardware = HardwarePath::kNone;
@@ -60,6 +55,9 @@ struct FrameReport {
 };
 /// "": nothing overflowed; else which list.
 [[nodiscard]] std::string describe_overflow(std::uint32_t overflow);
+
+enum class Round : std::uint8_t;  // passes/pass.h
+struct Pass;
 
 class Renderer {
  public:
@@ -100,17 +98,13 @@ class Renderer {
   [[nodiscard]] std::uint32_t place_pyramid();
   [[nodiscard]] Status make_buffers();
   void set_addresses();
-  [[nodiscard]] Status make_pipelines();
+  [[nodiscard]] std::array<std::uint32_t, 10> specialization() const;
+  [[nodiscard]] Result<Pipeline> make_pipeline(const Pass& pass);
   void record_begin(Commands& list);
-  void record_selection(Commands& list, std::uint32_t pass);
-  void record_raster(Commands& list, std::uint32_t pass, bool in_order = false);
-  void record_pyramid(Commands& list);
+  [[nodiscard]] Status record_round(Commands& list, Round round);
   [[nodiscard]] Status record();
   [[nodiscard]] Status clear_lists();
   [[nodiscard]] Status decode_roots();
-  [[nodiscard]] bool has_far() const;
-  [[nodiscard]] std::uint32_t queue_parts() const;
-  [[nodiscard]] bool has_far_raster() const;
   [[nodiscard]] Result<GpuCounters> read_counters();
   struct Item {
     run::ClusterInstance key;
@@ -127,8 +121,8 @@ class Renderer {
   Buffer frame_block_, counters_block_, upload_;
   Buffer visible_, queue_, open_groups_, items_, retry_nodes_, retry_clusters_, retry_instances_, clipped_, pixels_,
       pyramid_, overdraw_, colors_;
-  Pipeline instances_, traverse_, persistent_, flat_, roots_, raster_far_, sort_, hardware_, clusters_, raster_,
-      raster_clip_, pyramid_build_;
+  std::vector<Pipeline> pipelines_;  ///< of the passes; empty where one does not run
+  Pipeline sort_;
   std::vector<Commands> lists_;  ///< 0: the frame, 1: drawing in order
   bool has_last_ = false;
 };

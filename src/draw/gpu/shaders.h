@@ -1,35 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The SPIR-V that was built from shaders/.
+// The SPIR-V that was built from shaders/, by the names that src/draw/CMakeLists.txt gives it.
 #pragma once
 
 #include <cstdint>
 #include <span>
+#include <string_view>
 
-namespace meshlode::draw::shaders {
+namespace meshlode::draw {
 
-[[nodiscard]] std::span<const std::uint32_t> instances();
-[[nodiscard]] std::span<const std::uint32_t> traverse();
-[[nodiscard]] std::span<const std::uint32_t> clusters();
-[[nodiscard]] std::span<const std::uint32_t> raster();
-[[nodiscard]] std::span<const std::uint32_t> raster_clip();
-[[nodiscard]] std::span<const std::uint32_t> pyramid();
-[[nodiscard]] std::span<const std::uint32_t> decode();
-[[nodiscard]] std::span<const std::uint32_t> flat();
-[[nodiscard]] std::span<const std::uint32_t> sort();
-[[nodiscard]] std::span<const std::uint32_t> resolve();
-[[nodiscard]] std::span<const std::uint32_t> resolve_textures();  ///< with base colour and normal textures
-[[nodiscard]] std::span<const std::uint32_t> raster_far();
-[[nodiscard]] std::span<const std::uint32_t> roots();
-[[nodiscard]] std::span<const std::uint32_t> persistent();
-[[nodiscard]] std::span<const std::uint32_t> hardware_vert();
-[[nodiscard]] std::span<const std::uint32_t> hardware_mesh();
-[[nodiscard]] std::span<const std::uint32_t> hardware_frag();
-[[nodiscard]] std::span<const std::uint32_t> hardware_mesh_frag();  ///< behind a mesh shader
-// The same with the alpha test of masked materials.
-[[nodiscard]] std::span<const std::uint32_t> raster_mask();
-[[nodiscard]] std::span<const std::uint32_t> raster_far_mask();
-[[nodiscard]] std::span<const std::uint32_t> raster_clip_mask();
-[[nodiscard]] std::span<const std::uint32_t> hardware_mask_frag();
-[[nodiscard]] std::span<const std::uint32_t> hardware_mesh_mask_frag();
+struct Shader {
+  std::string_view name;  ///< "raster.comp"; "raster_mask.comp" with the alpha test of masked materials
+  std::span<const std::uint32_t> words;
+};
+[[nodiscard]] std::span<const Shader> all_shaders();
+/// \pre it is one of all_shaders()
+[[nodiscard]] std::span<const std::uint32_t> find_shader(std::string_view name);
 
-}  // namespace meshlode::draw::shaders
+}  // namespace meshlode::draw

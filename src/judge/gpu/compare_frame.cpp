@@ -44,7 +44,7 @@ std::vector<std::uint32_t> expected_words(const run::DecodedCluster& cluster) {
 
 Result<Comparison> compare_decode(draw::Device& device, const draw::GpuScene& scene, const run::Asset& asset) {
   TRY_LET(decoded, run::decode_all(asset));
-  TRY_LET(pipeline, device.make_compute(draw::shaders::decode(), {}));
+  TRY_LET(pipeline, device.make_compute(draw::find_shader("decode.comp"), {}));
   constexpr std::uint64_t kChunkWords = 4u << 20;
   TRY_LET(output, device.make_buffer(kChunkWords * 4, draw::Memory::kDevice));
   TRY_LET(entries_buffer, device.make_buffer(std::uint64_t{scene.cluster_count} * 8, draw::Memory::kDevice));

@@ -34,30 +34,9 @@ std::vector<Words> find_instructions(const Words& module, std::uint32_t opcode) 
 }
 
 TEST(FloatControls, EveryShaderDeclaresRoundingToNearestOnceForBothWidths) {
-  using namespace shaders;
-  for (const auto shader : {shaders::instances(),
-                            shaders::traverse(),
-                            shaders::clusters(),
-                            shaders::raster(),
-                            shaders::raster_clip(),
-                            shaders::pyramid(),
-                            shaders::decode(),
-                            shaders::roots(),
-                            shaders::raster_far(),
-                            shaders::resolve(),
-                            shaders::sort(),
-                            shaders::flat(),
-                            shaders::persistent(),
-                            shaders::hardware_vert(),
-                            shaders::hardware_mesh(),
-                            shaders::hardware_frag(),
-                            shaders::hardware_mesh_frag(),
-                            shaders::resolve_textures(),
-                            shaders::raster_mask(),
-                            shaders::raster_far_mask(),
-                            shaders::raster_clip_mask(),
-                            shaders::hardware_mask_frag(),
-                            shaders::hardware_mesh_mask_frag()}) {
+  EXPECT_GT(all_shaders().size(), 20U);
+  for (const auto& [name, shader] : all_shaders()) {
+    SCOPED_TRACE(name);
     const Words before(shader.begin(), shader.end()), module = declare_round_to_nearest_even(shader);
     ASSERT_EQ(module.size(), before.size() + 2 + 8);
     const auto entries = find_instructions(module, 15);
@@ -76,7 +55,7 @@ TEST(FloatControls, EveryShaderDeclaresRoundingToNearestOnceForBothWidths) {
 
 TEST(FloatControls, LeavesAloneWhatIsNoModule) {
   EXPECT_TRUE(declare_round_to_nearest_even({}).empty());
-  const auto shader = shaders::sort();
+  const auto shader = find_shader("sort.comp");
   Words old(shader.begin(), shader.end());
   old[1] = 0x00010300;  // before 1.4 it is an extension
   EXPECT_EQ(declare_round_to_nearest_even(old), old);
@@ -180,7 +159,6 @@ TEST_F(Floats, InstancesAtTheThresholdAreDrawnByTheFlatRule) {
   const auto scene = upload_scene(*device_, *asset, threshold_instances(tables, camera, 1.0, kCount, true));
   ASSERT_TRUE(scene);
   RendererOptions options{.width = camera.width, .height = camera.height, .frustum = false};
-  options.far_raster = false;
   auto renderer = Renderer::make(*device_, *scene, options);
   ASSERT_TRUE(renderer) << renderer.error().message();
   const double pixel_errors[] = {5e-4, 3e-3};

@@ -50,14 +50,14 @@ void consider(uint slot, uint id, bool is_there) {
   const bool is_software = is_there && !is_hardware;
   const uint at = append_item(STAGE_SOFTWARE, is_software, counters.software_before[pass], 1u);
   if (is_software) {
-    if (at < frame.item_capacity) frame.items.at[at] = uvec2(slot, id);
+    if (at < frame.item_capacity) frame.items.at[at] = item_of(slot, id);
     else report_overflow(OVERFLOW_CLUSTERS);
   }
   if (kHardware != 0u) {
     const bool wants = is_there && is_hardware;
     const uint back = append_item(STAGE_HARDWARE, wants, counters.hardware_before[pass], 1u);
     if (wants) {
-      if (back < frame.item_capacity) frame.items.at[frame.item_capacity - 1u - back] = uvec2(slot, id);
+      if (back < frame.item_capacity) frame.items.at[frame.item_capacity - 1u - back] = item_of(slot, id);
       else report_overflow(OVERFLOW_CLUSTERS);
       atomicAdd(counters.stages[STAGE_DRAW + pass].x, 1u);
     }

@@ -21,7 +21,9 @@ layout(push_constant, scalar) uniform Push {
 #define frame block.all
 #define counters block.all.counters.all
 
-const uint kGroupLanes = 8u;  // invocations that share an open group's clusters
+const uint kGroupLanes = 8u;   // invocations that share an open group's clusters
+const uint kFarLanes = 32u;    // that draw a far root
+const uint kFarPerGroup = 4u;  // far roots of a workgroup of raster_far.comp
 const uint kNone = 0xFFFFFFFFu;
 const uint kInstanceMirrored = 1u;
 const uint kInstanceSingular = 2u;
@@ -70,5 +72,7 @@ uint append_item(uint stage, bool wants, uint before, uint per_group) {
   }
   return subgroupBroadcastFirst(base) + subgroupBallotExclusiveBitCount(votes);
 }
+
+GpuItem item_of(uint slot, uint cluster) { return GpuItem(slot, cluster, 0u); }
 
 void report_overflow(uint which) { atomicOr(counters.overflow, which); }

@@ -22,6 +22,10 @@ struct vec4 {                // NOLINT(readability-identifier-naming)
 #define GPU_ARRAY(type, name, count) type name[count]
 #endif
 
+// Of every record below, of the order of their members, and of the ids of specialization constants: what changes any of
+// them raises it, so that who copied this text notices. docs/reference/shaders.md says what each version changed.
+#define FRAME_LAYOUT_VERSION 1
+
 // One mesh. Doubles first: nothing is padded.
 struct GpuMesh {
   GPU_ARRAY(double, origin, 3);
@@ -156,6 +160,13 @@ struct GpuVisible {
   uint instance, mesh, flags, reserved;
 };
 
+// A cluster that is drawn.
+struct GpuItem {
+  uint slot;     // of the visible instances, and ITEM_IS_… marks
+  uint cluster;  // of the scene
+  uint view;     // whose picture it is drawn in: 0 where there is one
+};
+
 // A list's length and the arguments of the dispatch that works on it.
 struct GpuStage {
   uint count;
@@ -254,6 +265,9 @@ layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer Te
 layout(buffer_reference, scalar, buffer_reference_align = 16) buffer VisibleArray {
   GpuVisible at[];
 };
+layout(buffer_reference, scalar, buffer_reference_align = 16) buffer ItemArray {
+  GpuItem at[];
+};
 layout(buffer_reference, scalar, buffer_reference_align = 16) buffer PairArray {
   uvec2 at[];
 };
@@ -286,10 +300,10 @@ struct GpuFrame {
   GPU_POINTER(WordArray) priorities;  // per page, written by the frame: bits of a float (resident.glsl)
   GPU_POINTER(WordArray) roots;       // decoded: roots.comp
   GPU_POINTER(VisibleArray) visible;
-  GPU_POINTER(PairArray) queue;        // parts of queue_capacity: (slot, node)
-  GPU_POINTER(PairArray) open_groups;  // (slot, group)
-  GPU_POINTER(PairArray) items;        // (slot, cluster): software from the front; from the back hardware or far ones
-  GPU_POINTER(PairArray) retry_nodes;  // (slot, node)
+  GPU_POINTER(PairArray) queue;           // parts of queue_capacity: (slot, node)
+  GPU_POINTER(PairArray) open_groups;     // (slot, group)
+  GPU_POINTER(ItemArray) items;           // software from the front; from the back hardware or far ones
+  GPU_POINTER(PairArray) retry_nodes;     // (slot, node)
   GPU_POINTER(PairArray) retry_clusters;  // (slot, cluster)
   GPU_POINTER(WordArray) retry_instances;
   GPU_POINTER(WordArray) clipped;  // items with a triangle that has to be clipped
@@ -317,7 +331,8 @@ static_assert(sizeof(GpuMesh) == 112 && sizeof(GpuInstance) == 112 && sizeof(Gpu
 static_assert(sizeof(GpuCluster) == 32 && sizeof(GpuMaterial) == 32 && sizeof(GpuCamera) == 144);
 static_assert(sizeof(GpuMeshUvs) == 20 && sizeof(GpuMask) == 80);
 static_assert(sizeof(GpuTextureUse) == 64 && sizeof(GpuSurface) == 136 && sizeof(GpuTexture) == 80);
-static_assert(sizeof(GpuVisible) == 384 && sizeof(GpuStage) == 16);
+static_assert(sizeof(GpuVisible) == 384 && sizeof(GpuItem) == 12 && sizeof(GpuStage) == 16);
+
 }  // namespace meshlode::draw
 #else
 layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer FrameBlock {

@@ -19,7 +19,7 @@ layout(location = 1) flat in uint in_triangle;
 #endif
 
 void main() {
-  const uint slot = frame.items.at[in_item].x, cluster = frame.items.at[in_item].y;
+  const uint slot = frame.items.at[in_item].slot, cluster = frame.items.at[in_item].cluster;
   const bool is_mirrored = (frame.visible.at[slot].flags & kInstanceMirrored) != 0u;
   bool is_drawn = gl_FrontFacing != is_mirrored;
   if (kDoubleSided != 0u && !is_drawn) {

@@ -11,7 +11,7 @@ layout(location = 1) flat out uint out_triangle;
 
 void main() {
   const uint item = frame.item_capacity - 1u - (counters.hardware_before[pass] + gl_InstanceIndex);
-  const uint slot = frame.items.at[item].x, cluster = frame.items.at[item].y;
+  const uint slot = frame.items.at[item].slot, cluster = frame.items.at[item].cluster;
   const ClusterData data =
       open_cluster(frame.meshes.at[frame.visible.at[slot].mesh], cluster);
   const uint triangle = gl_VertexIndex / 3u;

@@ -8,9 +8,8 @@
 #include "cull.glsl"
 #include "resident.glsl"
 
-layout(constant_id = 3) const uint kFarInstances = 0u;
-layout(constant_id = 4) const uint kFarLanes = 32u;  // as in raster_far.comp
-layout(constant_id = 5) const uint kFarRaster = 0u;
+layout(constant_id = 3) const uint kHardware = 0u;  // 1: every cluster is asked for its size: no instance is far
+const bool kFarRaster = kHardware == 0u && kStreams == 0u;  // pages of decoded roots could be evicted
 
 const double kGrowth = 1.00000095367431640625lf;  // 1 + 2^-20
 const double kMinFactor = 1.1754943508222875e-38lf, kMaxFactor = 8.507059173023462e37lf;  // 2^-126, 2^126
@@ -217,20 +216,20 @@ void append_far(uint id, uint slot, uint group, bool is_far, MetricView view, Cu
     cluster_count = is_ready(group) ? frame.groups.at[group].cluster_count : 0u;
     cluster = frame.groups.at[group].first_cluster;
     const GpuCluster c = frame.clusters.at[cluster];
-    is_small = kFarRaster != 0u && cluster_count == 1u &&
+    is_small = kFarRaster && cluster_count == 1u &&
                is_few_pixels(bounds_by(rows, vec3(c.center[0], c.center[1], c.center[2]), c.radius));
   }
   const bool is_large = cluster_count == 1u && !is_small;
   const uint item = append_item(STAGE_SOFTWARE, is_large, counters.software_before[pass], 1u);
   if (is_large) {
-    if (item < frame.item_capacity) frame.items.at[item] = uvec2(slot, cluster);
+    if (item < frame.item_capacity) frame.items.at[item] = item_of(slot, cluster);
     else report_overflow(OVERFLOW_CLUSTERS);
   }
-  if (kFarRaster != 0u) {
-    const uint back = append_item(STAGE_HARDWARE, is_small, counters.hardware_before[pass], 128u / kFarLanes);
+  if (kFarRaster) {
+    const uint back = append_item(STAGE_HARDWARE, is_small, counters.hardware_before[pass], kFarPerGroup);
     if (is_small) {
       const uint mirrored = (INSTANCE.flags & kInstanceMirrored) != 0u ? ITEM_IS_MIRRORED : 0u;
-      if (back < frame.item_capacity) frame.items.at[frame.item_capacity - 1u - back] = uvec2(slot | ITEM_IS_FAR | mirrored, cluster);
+      if (back < frame.item_capacity) frame.items.at[frame.item_capacity - 1u - back] = item_of(slot | ITEM_IS_FAR | mirrored, cluster);
       else report_overflow(OVERFLOW_CLUSTERS);
     }
   }
@@ -319,10 +318,10 @@ void main() {
   uint group = kNone;
   if (fits) {
     view = make_view(id);
-    if (kFarInstances != 0u) group = only_open_group(id, view);
+    if (kHardware == 0u) group = only_open_group(id, view);
   }
   const bool is_far = group != kNone;
-  if (kFarInstances != 0u) append_far(id, slot, group, is_far, view, rows);
+  if (kHardware == 0u) append_far(id, slot, group, is_far, view, rows);
   append_root(id, slot, fits && !is_far);
   if (!fits) return;
   frame.visible.at[slot].clip = clip.at;

@@ -3,20 +3,16 @@
 // small triangle is one invocation's, in 32-bit integers; a larger one is everybody's, in 64-bit integers. Triangles that
 // have to be clipped are left to raster_clip.comp.
 #version 460
+#define GROUP_SIZE 128  // a multiple of kSliceSize: few waste little on small clusters, many hide a cluster's latency
 #include "common.glsl"
 #include "page.glsl"
 #include "screen.glsl"
 
-// A multiple of kSliceSize. Few invocations waste little on small clusters, many hide a cluster's
-// latency.
-layout(local_size_x_id = 4) in;
 // Of a cluster of this scene: little shared memory is many workgroups at once.
 layout(constant_id = 5) const uint kMaxTriangles = 256u;
 layout(constant_id = 6) const uint kMaxVertices = 256u;
 #include "strips.glsl"
 #include "alpha.glsl"
-
-#define GROUP_SIZE int(gl_WorkGroupSize.x)
 
 layout(constant_id = 0) const uint kDoubleSided = 0u;  // 1: some material of the scene is
 
@@ -207,10 +203,10 @@ void draw_listed(uint item, uint slot, ClusterData data, uint lane, uint lanes) 
 }
 
 void draw_item(uint item) {
-  const uint lane = gl_LocalInvocationID.x, lanes = gl_WorkGroupSize.x;
-  const uvec2 entry = frame.items.at[item];
-  if ((entry.x & ITEM_IS_FAR) != 0u) return;  // in verify mode: all items are at the front
-  const uint slot = entry.x, cluster = entry.y;
+  const uint lane = gl_LocalInvocationID.x, lanes = uint(GROUP_SIZE);
+  const GpuItem entry = frame.items.at[item];
+  if ((entry.slot & ITEM_IS_FAR) != 0u) return;  // in verify mode: all items are at the front
+  const uint slot = entry.slot, cluster = entry.cluster;
   const ClusterData data = open_cluster(frame.meshes.at[frame.visible.at[slot].mesh], cluster);
   if (lane < 8u) shared_snapped[lane] = 0u;
   if (lane == 0u) {
@@ -236,6 +232,6 @@ void draw_item(uint item) {
 }
 
 void main() {
-  const uint item = counters.software_before[pass] + gl_WorkGroupID.y * kGroupRow + gl_WorkGroupID.x;
+  const uint item = counters.software_before[pass] + group_index();
   if (item < min(counters.stages[STAGE_SOFTWARE].count, frame.item_capacity)) draw_item(item);
 }

@@ -160,7 +160,7 @@ bool is_snapped(uint slot, ClusterData data, uint vertex) {
 }
 
 void draw_item(uint item) {
-  const uint slot = frame.items.at[item].x, cluster = frame.items.at[item].y;
+  const uint slot = frame.items.at[item].slot, cluster = frame.items.at[item].cluster;
   const ClusterData data =
       open_cluster(frame.meshes.at[frame.visible.at[slot].mesh], cluster);
   const bool is_mirrored = (frame.visible.at[slot].flags & kInstanceMirrored) != 0u;

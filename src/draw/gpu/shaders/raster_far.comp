@@ -2,9 +2,10 @@
 // Software rasterizer for root clusters of a few pixels, of which large scenes have most: the same integers as raster.comp
 // (I9), for less. The cluster is decoded already (roots.comp); it is known to be in front of the near plane, inside the
 // guard band and small, so nothing is clipped and all coordinates are small; the perspective divide stays in doubles, whose
-// integers are exact below 2^53. kLanes invocations draw a cluster, several clusters share a workgroup, and triangles that
+// integers are exact below 2^53. kFarLanes invocations draw a cluster, several clusters share a workgroup, and triangles that
 // reach a pixel centre are gathered before they are drawn: few do.
 #version 460
+#define GROUP_SIZE 128
 #include "common.glsl"
 #include "screen.glsl"
 #ifdef ALPHA_MASK
@@ -13,17 +14,14 @@
 #include "alpha.glsl"
 
 layout(constant_id = 0) const uint kDoubleSided = 0u;
-layout(local_size_x = 128) in;
-layout(constant_id = 4) const uint kLanes = 32u;  // 16, 32, 64 or 128
 // Of the scene's roots: little shared memory is many workgroups at once.
-layout(constant_id = 6) const uint kMaxVertices = 256u;
-layout(constant_id = 7) const uint kMaxTriangles = 256u;
-const uint kSlices = 128u / kLanes;
+layout(constant_id = 4) const uint kMaxRootVertices = 256u;
+layout(constant_id = 7) const uint kMaxRootTriangles = 256u;
 
-shared ivec2 far_xy[kSlices * kMaxVertices];
-shared uint far_depth[kSlices * kMaxVertices];
-shared uint far_drawn[kSlices * kMaxTriangles];  // corners, 8 bits each, and the triangle
-shared uint far_count[kSlices];
+shared ivec2 far_xy[kFarPerGroup * kMaxRootVertices];
+shared uint far_depth[kFarPerGroup * kMaxRootVertices];
+shared uint far_drawn[kFarPerGroup * kMaxRootTriangles];  // corners, 8 bits each, and the triangle
+shared uint far_count[kFarPerGroup];
 
 // floor(n / d) for an integer n, |n| < 2^63. \pre the quotient fits, inverse = estimate_reciprocal(d)
 int quotient(double n, uint d, double inverse) {
@@ -90,26 +88,26 @@ void draw_box(ivec3 x, ivec3 y, uvec3 depth, uint item, uint triangle) {
 }
 
 void main() {
-  const uint slice = gl_LocalInvocationID.x / kLanes, lane = gl_LocalInvocationID.x % kLanes;
-  const uint vertices = slice * kMaxVertices, triangles = slice * kMaxTriangles;
+  const uint slice = gl_LocalInvocationID.x / kFarLanes, lane = gl_LocalInvocationID.x % kFarLanes;
+  const uint vertices = slice * kMaxRootVertices, triangles = slice * kMaxRootTriangles;
   // In verify mode (a = 1) all items are in order at the front, and those of this pass are marked.
-  const uint index = (gl_WorkGroupID.y * kGroupRow + gl_WorkGroupID.x) * kSlices + slice + (a == 1u ? 0u : counters.hardware_before[pass]);
+  const uint index = group_index() * kFarPerGroup + slice + (a == 1u ? 0u : counters.hardware_before[pass]);
   bool is_there = index < (a == 1u ? counters.stages[STAGE_SOFTWARE].count : min(counters.stages[STAGE_HARDWARE].count, frame.item_capacity));
   const uint item = a == 1u ? index : frame.item_capacity - 1u - index;
-  uvec2 entry = uvec2(0u);
+  GpuItem entry = item_of(0u, 0u);
   if (is_there) entry = frame.items.at[item];
-  is_there = is_there && (entry.x & ITEM_IS_FAR) != 0u;
-  const uint slot = entry.x & ITEM_SLOT;
-  const bool is_mirrored = (entry.x & ITEM_IS_MIRRORED) != 0u;
+  is_there = is_there && (entry.slot & ITEM_IS_FAR) != 0u;
+  const uint slot = entry.slot & ITEM_SLOT;
+  const bool is_mirrored = (entry.slot & ITEM_IS_MIRRORED) != 0u;
   uint word = 0u, vertex_count = 0u, triangle_count = 0u;
   if (is_there) {
-    word = frame.clusters.at[entry.y].root_word;
+    word = frame.clusters.at[entry.cluster].root_word;
     const uint head = frame.roots.at[word++];
     vertex_count = head & 0xFFFFu;
     triangle_count = head >> 16u;
   }
   if (lane == 0u) far_count[slice] = 0u;
-  for (uint v = lane; v < vertex_count; v += kLanes) {
+  for (uint v = lane; v < vertex_count; v += kFarLanes) {
     const uint at = word + 3u * v;
     const dvec3 p = dvec3(ivec3(frame.roots.at[at], frame.roots.at[at + 1u], frame.roots.at[at + 2u]));
     // The rows that are constant: a sum of zeros and the constant is the constant.
@@ -120,7 +118,7 @@ void main() {
     snap_far(clip, far_xy[vertices + v], far_depth[vertices + v]);
   }
   barrier();
-  for (uint t = lane; t < triangle_count; t += kLanes) {
+  for (uint t = lane; t < triangle_count; t += kFarLanes) {
     const uint corners = frame.roots.at[word + 3u * vertex_count + t];
     const ivec2 v0 = far_xy[vertices + (corners & 255u)], v1 = far_xy[vertices + (corners >> 8u & 255u)],
                 v2 = far_xy[vertices + (corners >> 16u & 255u)];
@@ -132,11 +130,11 @@ void main() {
     if (is_drawn) far_drawn[triangles + atomicAdd(far_count[slice], 1u)] = (corners & 0xFFFFFFu) | t << 24u;
   }
   barrier();
-  for (uint i = lane; i < far_count[slice]; i += kLanes) {
+  for (uint i = lane; i < far_count[slice]; i += kFarLanes) {
     const uint corners = far_drawn[triangles + i];
     const uvec3 v = uvec3(corners, corners >> 8u, corners >> 16u) & 255u;
     const ivec2 v0 = far_xy[vertices + v.x], v1 = far_xy[vertices + v.y], v2 = far_xy[vertices + v.z];
-    BEGIN_ALPHA(slot, open_cluster(frame.meshes.at[frame.visible.at[slot].mesh], entry.y), corners >> 24u, v);
+    BEGIN_ALPHA(slot, open_cluster(frame.meshes.at[frame.visible.at[slot].mesh], entry.cluster), corners >> 24u, v);
     draw_box(ivec3(v0.x, v1.x, v2.x), ivec3(v0.y, v1.y, v2.y),
              uvec3(far_depth[vertices + v.x], far_depth[vertices + v.y], far_depth[vertices + v.z]), item, corners >> 24u);
   }

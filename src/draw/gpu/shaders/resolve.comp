@@ -91,7 +91,7 @@ float lighting(vec3 normal) {
 }
 
 vec3 shade(uint item, uint triangle, dvec2 p, uint level_count) {
-  const uint marked = frame.items.at[item].x, slot = marked & ITEM_SLOT, cluster = frame.items.at[item].y;
+  const uint marked = frame.items.at[item].slot, slot = marked & ITEM_SLOT, cluster = frame.items.at[item].cluster;
   const uint instance = frame.visible.at[slot].instance;
   const GpuMesh mesh = frame.meshes.at[frame.visible.at[slot].mesh];
   const ClusterData data = open_cluster(mesh, cluster);

@@ -6,8 +6,8 @@
 #define GROUP_SIZE 64
 #include "common.glsl"
 
-uint64_t key_of(uvec2 item) {
-  return (uint64_t(frame.visible.at[item.x & ITEM_SLOT].instance) << 32) | uint64_t(item.y);
+uint64_t key_of(GpuItem item) {
+  return (uint64_t(frame.visible.at[item.slot & ITEM_SLOT].instance) << 32) | uint64_t(item.cluster);
 }
 
 void main() {
@@ -15,7 +15,7 @@ void main() {
   if (low < start || ((low - start) / b) % 2u != 0u || low + b >= a) return;
   const uint high = low + b;
   if (low / (2u * depth) != high / (2u * depth)) return;
-  const uvec2 first = frame.items.at[low], second = frame.items.at[high];
+  const GpuItem first = frame.items.at[low], second = frame.items.at[high];
   if (key_of(second) >= key_of(first)) return;
   frame.items.at[low] = second;
   frame.items.at[high] = first;
