@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // bench_gpu ASSET --scene cube:15x15x15 | ground:1000 [--size WxH] [--frames N] [--variants a,b] [--device D]
-//           [--pixel-error T] [--png FILE] [-o FILE.json]
+//           [--pixel-error T] [--pool SHARE] [--png FILE] [-o FILE.json]
 // Times a frame on the device, pass by pass: medians over N frames of a still and of a moving camera, for each variant.
+// With --pool, instead, N frames of a moving camera from a pool of that share of the pages, against all resident.
 #include <algorithm>
 #include <charconv>
 #include <cstdio>
@@ -14,6 +15,7 @@
 #include "base/file.h"
 #include "base/json_writer.h"
 #include "draw/gpu/renderer.h"
+#include "pool.h"
 #include "scenes.h"
 
 namespace meshlode::bench {
@@ -22,7 +24,7 @@ namespace {
 struct Options {
   std::string asset, scene = "cube:15x15x15", output, png, device, variants;
   std::uint32_t width = 2240, height = 1260, frames = 50;
-  double pixel_error = 1.0;
+  double pixel_error = 1.0, pool = 0.0;
 };
 
 struct Variant {
@@ -124,6 +126,25 @@ void write_measured(JsonWriter& json, const char* key, const Measured& m) {
   json.end_object();
 }
 
+Status write_pool(JsonWriter& json, const draw::Device& device, const run::Asset& asset, const BenchScene& scene,
+                  const Options& options) {
+  const auto pool = measure_pool(device, asset, scene,
+                                 {options.pool, options.width, options.height, options.frames, options.pixel_error});
+  if (!pool) return pool.error();
+  json.field("pages", pool->pages);
+  json.field("slots", pool->slots);
+  json.field("all_resident_ms", pool->all_ms);
+  json.field("pool_ms", pool->pool_ms);
+  json.field("times_all_resident", pool->pool_ms / pool->all_ms);
+  json.field("all_resident_clusters", pool->all_clusters);
+  json.field("pool_clusters", pool->pool_clusters);
+  json.field("loads", pool->loads);
+  json.field("frames_that_lacked_a_page", pool->incomplete);
+  std::fprintf(stderr, "pool of %u of %u pages %8.3f ms  all resident %8.3f ms: %.3f times\n", pool->slots, pool->pages,
+               pool->pool_ms, pool->all_ms, pool->pool_ms / pool->all_ms);
+  return Ok{};
+}
+
 /// A colour per cluster of the list, to see that the picture is there.
 Status write_picture(draw::Renderer& renderer, const std::string& path) {
   const auto pixels = renderer.read_pixels();
@@ -165,6 +186,8 @@ bool parse(int count, char** args, Options& out) {
       out.frames = static_cast<std::uint32_t>(std::atoi(value.c_str()));
     else if (arg == "--pixel-error")
       out.pixel_error = std::atof(value.c_str());
+    else if (arg == "--pool")
+      out.pool = std::atof(value.c_str());
     else if (arg == "--size" && std::sscanf(value.c_str(), "%ux%u", &out.width, &out.height) == 2)
       continue;
     else
@@ -178,12 +201,23 @@ int fail(const Error& error) {
   return static_cast<int>(error.code);
 }
 
+int write_json(JsonWriter& json, const std::string& path) {
+  const std::string text = json.text();
+  if (path.empty()) {
+    std::puts(text.c_str());
+    return 0;
+  }
+  const std::span<const std::uint8_t> bytes(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
+  if (const Status written = write_file_atomically(path, bytes); !written) return fail(written.error());
+  return 0;
+}
+
 int run(int count, char** args) {
   Options options;
   if (!parse(count, args, options)) {
     std::fprintf(stderr,
                  "usage: bench_gpu ASSET --scene cube:XxYxZ|ground:SIDE [--size WxH] [--frames N] "
-                 "[--variants a,b] [--device D] [--pixel-error T] [--png FILE] [-o FILE]\n");
+                 "[--variants a,b] [--device D] [--pixel-error T] [--pool SHARE] [--png FILE] [-o FILE]\n");
     return 1;
   }
   const auto asset = run::Asset::open(options.asset);
@@ -199,8 +233,6 @@ int run(int count, char** args) {
 
   auto device = draw::Device::open({.device = options.device, .validate = false});
   if (!device) return fail(device.error());
-  const auto uploaded = draw::upload_scene(*device, *asset, scene.instances);
-  if (!uploaded) return fail(uploaded.error());
 
   JsonWriter json;
   json.begin_object();
@@ -214,6 +246,13 @@ int run(int count, char** args) {
   json.field("height", options.height);
   json.field("pixel_error", options.pixel_error);
   json.field("frames", options.frames);
+  if (options.pool > 0.0) {
+    if (const Status s = write_pool(json, *device, *asset, scene, options); !s) return fail(s.error());
+    json.end_object();
+    return write_json(json, options.output);
+  }
+  const auto uploaded = draw::upload_scene(*device, *asset, scene.instances);
+  if (!uploaded) return fail(uploaded.error());
   json.key("variants");
   json.begin_array();
   for (Variant variant : all_variants()) {
@@ -264,14 +303,7 @@ int run(int count, char** args) {
   }
   json.end_array();
   json.end_object();
-  if (options.output.empty()) {
-    std::puts(json.text().c_str());
-    return 0;
-  }
-  const std::string text = json.text();
-  const std::span<const std::uint8_t> bytes(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
-  if (const Status written = write_file_atomically(options.output, bytes); !written) return fail(written.error());
-  return 0;
+  return write_json(json, options.output);
 }
 
 }  // namespace

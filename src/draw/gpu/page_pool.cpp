@@ -2,12 +2,24 @@
 #include "draw/gpu/page_pool.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/try.h"
 #include "draw/gpu/upload_table.h"
 #include "run/unpack/unpack.h"
 
 namespace meshlode::draw {
+
+std::uint32_t pool_slots(const run::Asset& asset, double share) {
+  std::vector<std::uint32_t> pages;
+  for (const format::GroupRecord& group : asset.groups()) {
+    if ((group.flags & format::kGroupTerminal) != 0) pages.push_back(group.page);
+  }
+  std::sort(pages.begin(), pages.end());
+  const auto roots = static_cast<std::uint32_t>(std::unique(pages.begin(), pages.end()) - pages.begin());
+  const double all = static_cast<double>(asset.pages().size());
+  return std::max({static_cast<std::uint32_t>(std::lround(all * std::clamp(share, 0.0, 1.0))), roots, 1U});
+}
 
 PagePool::PagePool(Device& device, const run::Asset& asset, const GpuScene& scene)
     : device_(device),

@@ -14,6 +14,9 @@
 
 namespace meshlode::draw {
 
+/// Slots for a share of an asset's pages, at least those of the roots.
+[[nodiscard]] std::uint32_t pool_slots(const run::Asset& asset, double share);
+
 class PagePool {
  public:
   /// All slots are free. \pre the arguments outlive this; `scene` was uploaded with slots

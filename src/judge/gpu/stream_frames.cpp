@@ -24,15 +24,6 @@ constexpr double kPriorityDifference = 0.01;
 /// Of the picture that pixel errors are of: the usual one.
 constexpr double kLines = 1080.0;
 
-std::uint32_t count_root_pages(const run::Asset& asset) {
-  std::vector<std::uint32_t> pages;
-  for (const format::GroupRecord& group : asset.groups()) {
-    if ((group.flags & format::kGroupTerminal) != 0) pages.push_back(group.page);
-  }
-  std::sort(pages.begin(), pages.end());
-  return static_cast<std::uint32_t>(std::unique(pages.begin(), pages.end()) - pages.begin());
-}
-
 /// Which pages are wanted, and by how much, in pixels.
 std::string compare_priorities(std::span<const float> device, std::span<const float> host, double pixel_error) {
   for (std::size_t page = 0; page < device.size(); ++page) {
@@ -74,8 +65,7 @@ Result<StreamFramesReport> verify_streaming_on_gpu(const run::Asset& asset, cons
   TRY_LET(device, draw::Device::open(options.device));
   out.device = device->info();
   out.pages = static_cast<std::uint32_t>(asset.pages().size());
-  out.slots =
-      std::max({static_cast<std::uint32_t>(std::lround(out.pages * options.pool_share)), count_root_pages(asset), 1U});
+  out.slots = draw::pool_slots(asset, options.pool_share);
   const double pixel_error = options.pixel_error * options.size.height / kLines;
   const bool is_seen = std::any_of(asset.instances().begin(), asset.instances().end(),
                                    [&](const format::InstanceRecord& i) { return is_drawable(asset, i); });
