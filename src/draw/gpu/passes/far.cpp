@@ -5,11 +5,6 @@
 
 namespace meshlode::draw {
 
-// With hardware raster every cluster is asked for its size on the screen. Of a pool the decoded roots could be evicted.
-bool has_far_raster(const RendererOptions& options) {
-  return options.hardware == HardwarePath::kNone && !options.streams;
-}
-
 const Pass kFarPass = {
     .name = "far",
     .shader = "raster_far.comp",

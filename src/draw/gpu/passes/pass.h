@@ -61,11 +61,18 @@ extern const Pass kInstancesPass, kTraversePass, kPersistentPass, kClustersPass,
     kHardwarePass, kPyramidPass;
 
 /// The BVH by one dispatch with a queue instead of one a depth.
-[[nodiscard]] bool is_persistent(const RendererOptions& options, Round round);
+inline bool is_persistent(const RendererOptions& o, Round round) {
+  return o.persistent || round == Round::kSecond;
+}
 /// The dispatches of single depths fill two parts of the queue in turn; the persistent traversal keeps one of its own
 /// empty.
-[[nodiscard]] std::uint32_t queue_parts(const RendererOptions& options);
-/// Roots of a few pixels have a rasterizer of their own.
-[[nodiscard]] bool has_far_raster(const RendererOptions& options);
+inline std::uint32_t queue_parts(const RendererOptions& o) {
+  return o.occlusion && !o.persistent ? 3 : 2;
+}
+/// Roots of a few pixels have a rasterizer of their own. With hardware raster every cluster is asked for its size on
+/// the screen; of a pool the decoded roots could be evicted.
+inline bool has_far_raster(const RendererOptions& o) {
+  return o.hardware == HardwarePath::kNone && !o.streams;
+}
 
 }  // namespace meshlode::draw

@@ -5,23 +5,13 @@
 
 namespace meshlode::draw {
 
-bool is_persistent(const RendererOptions& options, Round round) {
-  return options.persistent || round == Round::kSecond;
-}
-
-std::uint32_t queue_parts(const RendererOptions& options) {
-  return options.occlusion && !options.persistent ? 3 : 2;
-}
-
 const Pass kPersistentPass = {
     .name = "traverse",
     .shader = "persistent.comp",
-    .runs = [](const RendererOptions& options,
-               Round round) { return round != Round::kInOrder && is_persistent(options, round); },
+    .runs = [](const RendererOptions& o, Round round) { return round != Round::kInOrder && is_persistent(o, round); },
     .record =
         [](const PassRecorder& to) {
-          // More than any device runs at once do no harm: they find nothing. What last frame's depth hid is little
-          // work.
+          // More than any device runs at once do no harm: they find nothing. The second round has little work.
           constexpr std::uint32_t kGroups = 1024, kSecondGroups = 256;
           Push push = to.push();
           push.a = queue_parts(to.options) - 1;

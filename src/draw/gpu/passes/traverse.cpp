@@ -9,8 +9,7 @@ namespace meshlode::draw {
 const Pass kTraversePass = {
     .name = "traverse",
     .shader = "traverse.comp",
-    .runs = [](const RendererOptions& options,
-               Round round) { return round != Round::kInOrder && !is_persistent(options, round); },
+    .runs = [](const RendererOptions& o, Round round) { return round != Round::kInOrder && !is_persistent(o, round); },
     .record =
         [](const PassRecorder& to) {
           Push push = to.push();
