@@ -2,6 +2,7 @@
 #include "pool.h"
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "base/try.h"
@@ -25,6 +26,14 @@ double sum_of(const draw::FrameReport& frame) {
 double median_of(std::vector<double> values) {
   std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
   return values[values.size() / 2];
+}
+
+/// Once around, and in the middle of the way a third as far away, so that other pages are wanted there.
+run::Camera pool_camera(const BenchScene& scene, double t, const PoolOptions& options) {
+  run::Camera camera = bench_camera(scene, t, options.width, options.height);
+  if (!scene.is_ground)
+    camera.eye += (0.65 * (0.5 - 0.5 * std::cos(6.283185307179586 * t))) * (camera.target - camera.eye);
+  return camera;
 }
 
 }  // namespace
@@ -63,13 +72,13 @@ Result<PoolReport> measure_pool(draw::Device device, const run::Asset& asset, co
   std::uint64_t before = ~std::uint64_t{0};
   for (int round = 0; round < 64 && before != pool.loads(); ++round) {
     before = pool.loads();
-    TRY_LET(frame, draw_pooled(bench_camera(scene, 0.0, options.width, options.height), out.slots));
+    TRY_LET(frame, draw_pooled(pool_camera(scene, 0.0, options), out.slots));
   }
   const std::uint64_t loads_before = pool.loads();
   out.incomplete = 0;
   std::vector<double> all_times, pool_times;
   for (std::uint32_t f = 0; f < options.frames; ++f) {
-    const run::Camera camera = bench_camera(scene, 1.0 * f / options.frames, options.width, options.height);
+    const run::Camera camera = pool_camera(scene, 1.0 * f / options.frames, options);
     TRY_LET(whole, all->draw(camera, options.pixel_error, 0.0));
     TRY_LET(partial, draw_pooled(camera, kLoadsPerFrame));
     all_times.push_back(sum_of(*whole));

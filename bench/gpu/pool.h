@@ -24,8 +24,8 @@ struct PoolReport {
   std::uint32_t incomplete = 0;  ///< frames that lacked a page
 };
 
-/// Draws the way of bench_camera() once, each frame by both renderers one after the other, so that a device that slows
-/// down does so for both. Uploads lie between frames and are not timed.
+/// Draws a way around the scene and close to it, each frame by both renderers one after the other, so that a device
+/// that slows down does so for both. Uploads lie between frames and are not timed.
 [[nodiscard]] Result<PoolReport> measure_pool(draw::Device device, const run::Asset& asset, const BenchScene& scene,
                                               const PoolOptions& options);
 
