@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Engines copy src/draw/gpu/shaders/frame.h: who changes a record or the id of a specialization constant raises
-// FRAME_LAYOUT_VERSION and says so in docs/reference/shaders.md.
+// Engines copy src/draw/gpu/shaders/frame.h: who changes a record, the push constants or the id of a specialization
+// constant raises FRAME_LAYOUT_VERSION and says so in docs/reference/shaders.md.
 #include <cstdint>
 #include <cstdio>
 #include <regex>
@@ -39,6 +39,10 @@ TEST(FrameLayout, AChangeRaisesTheVersionAndIsDocumented) {
     }
   }
   EXPECT_GT(constants, 10U);
+  const std::string common = read_file("src/draw/gpu/shaders/common.glsl").text;
+  std::smatch push;
+  ASSERT_TRUE(std::regex_search(common, push, std::regex("uniform Push \\{[^}]*\\}")));
+  text += squeeze(push.str());
   std::smatch version;
   ASSERT_TRUE(std::regex_search(frame, version, std::regex("#define FRAME_LAYOUT_VERSION ([0-9]+)")));
   const std::string document = read_file("docs/reference/shaders.md").text;

@@ -22,8 +22,9 @@ struct vec4 {                // NOLINT(readability-identifier-naming)
 #define GPU_ARRAY(type, name, count) type name[count]
 #endif
 
-// Of every record below, of the order of their members, and of the ids of specialization constants: what changes any of
-// them raises it, so that who copied this text notices. docs/reference/shaders.md says what each version changed.
+// Of every record below, of the order of their members, of the push constants and of the ids of specialization
+// constants: what changes any of them raises it, so that who copied this text notices. docs/reference/shaders.md says
+// what each version changed.
 #define FRAME_LAYOUT_VERSION 1
 
 // One mesh. Doubles first: nothing is padded.
