@@ -197,6 +197,7 @@ struct BuildOptions {
   std::uint32_t page_size = 128;             ///< largest page, KiB: 16, 32, 64 or 128; a larger group has its own
   PageOrder page_order = PageOrder::kLevel;  ///< of groups inside a level
   std::uint32_t root_bytes = 0;  ///< limit of each mesh's first page, bytes, 16,384 to 131,072; 0: as page_size
+  bool page_hints = false;       ///< the file has a sphere and errors of each page (AssetFile::page_hint)
   AggregateChoice aggregate = AggregateChoice::kMasked;  ///< what is simplified by coverage
   /// kNamed: names of meshes, whose pieces of at most 512 triangles are taken, and of materials, whose pieces are.
   /// Comma-separated; '*' stands for any characters, '?' for one.

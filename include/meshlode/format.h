@@ -77,6 +77,7 @@ enum class SectionId : std::uint32_t {
   kBlobs = four_cc('B', 'L', 'B', 'T'),          ///< BlobRecord[]
   kPromises = four_cc('P', 'R', 'M', 'S'),       ///< PromiseMeshRecord[]; optional, not required
   kPromiseErrors = four_cc('P', 'R', 'M', 'G'),  ///< PromiseGroupRecord[]; there exactly where kPromises is
+  kPageHints = four_cc('P', 'H', 'N', 'T'),      ///< PageHintRecord[]; optional, not required
   kBlobData = four_cc('B', 'L', 'O', 'B'),       ///< images and animation data as they were
 };
 
@@ -326,6 +327,17 @@ struct PageRecord {
   std::uint64_t decoded_checksum;  ///< XXH3-64 of the decoded bytes
 };
 static_assert(sizeof(PageRecord) == 64);
+
+/// What says how much a page matters before its groups are read: with the rule of selection, the sphere and the largest
+/// error give no less than the projected error of any of its groups.
+struct PageHintRecord {
+  float center[3];            ///< of a sphere that contains the LOD spheres of the page's groups, so all it may draw
+  float radius;               ///< object units; kInfiniteError: all of space
+  float largest_error;        ///< of the page's groups; kInfiniteError: one is terminal, keep the page always
+  float smallest_error;       ///< of the page's groups
+  std::uint32_t reserved[2];  ///< zero
+};
+static_assert(sizeof(PageHintRecord) == 32);
 
 /// A decoded page is an array of u32 words, read as it lies by CPU and GPU:
 ///   PageHeader · cluster heads, kHeadWords (+ 1 where normals are stored) words each · each cluster's data · one zero

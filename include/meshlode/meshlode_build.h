@@ -114,6 +114,7 @@ typedef struct meshlode_build_options {
   uint32_t page_size;         /**< largest page, KiB: 16, 32, 64 or 128; a larger group has a page of its own */
   uint32_t page_order;        /**< of groups inside a level: 0 as built, 1 those together that views need together */
   uint32_t root_bytes;        /**< limit of each mesh's first page, 16,384 to 131,072; 0: as page_size */
+  int page_hints;             /**< the file has a sphere and errors of each page (meshlode_page_hint) */
   uint32_t aggregate;         /**< simplified by coverage: 4 masked cards, 0 nothing, 1 auto, 2 all small pieces,
                                    3 aggregate_names */
   const char*

@@ -43,6 +43,7 @@ WriteInput gather(const scene::Scene& scene, std::vector<BuiltMesh> meshes, cons
   WriteInput input;
   input.scene = &scene;
   input.codec = options.codec;
+  input.has_page_hints = options.page_hints;
   input.promises = promises_of(options.promise);
   report.decisions.clear();
   report.levels.clear();

@@ -57,6 +57,7 @@ struct SceneOptions {
   std::uint32_t page_kib = kUsualPageKib;              ///< largest page: 16, 32, 64 or 128
   PageOrder page_order = PageOrder::kLevel;
   std::uint32_t root_bytes = 0;     ///< limit of a mesh's first page, kFewestRootBytes to kMaxPageBytes; 0: as others
+  bool page_hints = false;          ///< section PHNT is written
   std::uint64_t max_memory = 0;     ///< bytes that the process may take (builder/needs.h); 0: what the machine has
   MeshStore* mesh_store = nullptr;  ///< meshes that were built before (builder/store/mesh_store.h); the same bytes
   /// Images of materials, for aggregates (builder/aggregate/material_looks.h). None: textured meshes are no aggregates.

@@ -154,6 +154,7 @@ Json settings_json(const scene::Scene& scene, const PipelineOptions& options,
   if (options.page_kib != kUsualPageKib) settings["page_size"] = options.page_kib;
   if (options.page_order != PageOrder::kLevel) settings["page_order"] = name_of(options.page_order);
   if (options.root_bytes != 0) settings["root_bytes"] = options.root_bytes;
+  if (options.page_hints) settings["page_hints"] = true;
   if (!options.textures.is_keep()) settings["textures"] = texture_word(options.textures);
   if (options.hooks != nullptr) settings["experimental"] = Json::parse(options.hooks->record, nullptr, false);
   put_budgets(settings, options);

@@ -88,6 +88,7 @@ TEST(CBuild, TheSameBytesAsInCpp) {
   options.page_size = 16;
   options.page_order = 1;
   options.root_bytes = 20000;
+  options.page_hints = 1;
   options.aggregate = 1;
   options.position_error = 0.01;
   options.thread_count = 1;
@@ -103,6 +104,7 @@ TEST(CBuild, TheSameBytesAsInCpp) {
   same.page_size = 16;
   same.page_order = PageOrder::kCovisible;
   same.root_bytes = 20000;
+  same.page_hints = true;
   same.aggregate = AggregateChoice::kAuto;
   same.position_error = 0.01;
   EXPECT_EQ(build_in_c(scene, &options), build_in_cpp(arrays, same));

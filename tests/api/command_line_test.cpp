@@ -62,6 +62,7 @@ const Saying kSayings[] = {
     {"--page-size 16", [](BuildOptions& o) { o.page_size = 16; }},
     {"--page-order covisible", [](BuildOptions& o) { o.page_order = PageOrder::kCovisible; }},
     {"--page-size 16 --root-bytes 65536", [](BuildOptions& o) { o.page_size = 16, o.root_bytes = 65536; }},
+    {"--page-hints", [](BuildOptions& o) { o.page_hints = true; }},
     {"--keep-layers off", [](BuildOptions& o) { o.keep_layers = false; }},
     {"--aggregate auto", [](BuildOptions& o) { o.aggregate = AggregateChoice::kAuto; }},
     {"--aggregate always", [](BuildOptions& o) { o.aggregate = AggregateChoice::kAlways; }},

@@ -57,6 +57,27 @@ void select(const meshlode_asset* asset, const std::uint8_t* choices, std::uint3
   meshlode_destroy_selector(selector);
 }
 
+/// What a reader asks before it reads a page: ranges that hold whole pages, and hints that can be compared.
+void plan(const meshlode_asset* asset, std::uint64_t max_gap, std::uint32_t pages, std::uint64_t file_bytes) {
+  std::vector<meshlode_range> ranges(pages + 1);
+  std::size_t count = 0;
+  require(meshlode_first_ranges(asset, max_gap, ranges.data(), ranges.size(), &count, nullptr) == MESHLODE_OK,
+          "more first ranges than pages");
+  for (std::size_t r = 0; r < count; ++r) {
+    require(ranges[r].bytes <= file_bytes && ranges[r].offset <= file_bytes - ranges[r].bytes, "a range off the file");
+    require(r == 0 || ranges[r].offset - ranges[r - 1].offset > ranges[r - 1].bytes, "ranges that meet");
+  }
+  require(count == 0 || meshlode_first_ranges(asset, max_gap, nullptr, 0, &count, nullptr) == MESHLODE_TOO_SMALL,
+          "ranges without room");
+  for (std::uint32_t p = 0; p < pages; ++p) {
+    const meshlode_hint hint = meshlode_page_hint(asset, p);
+    require(hint.radius >= 0.0F && hint.radius <= MESHLODE_INFINITE_ERROR && hint.smallest_error >= 0.0F &&
+                hint.largest_error >= hint.smallest_error && hint.largest_error <= MESHLODE_INFINITE_ERROR,
+            "a hint that says nothing");
+    for (const float middle : hint.center) require(middle - middle == 0.0F, "a hint that is nowhere");
+  }
+}
+
 void unpack(const meshlode_asset* asset, std::uint32_t pages, const std::uint8_t* file, std::size_t file_bytes) {
   const auto copy_of = [&](meshlode_range range) {  // of exactly its size
     auto copy = std::make_unique<std::uint8_t[]>(range.bytes);
@@ -121,6 +142,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   std::uint32_t pages = 0;
   (void)meshlode_pages(asset, &pages);
   select(asset, data, pages);
+  plan(asset, std::uint64_t{data[0]} << (data[3] % 64U), pages, file_bytes);
   unpack(asset, pages, file, file_bytes);
   meshlode_close(asset);
   return 0;

@@ -92,6 +92,10 @@ void print(Line& line, const format::PromiseGroupRecord& r) {
   line << r.texel_error << r.appearance_error;
 }
 
+void print(Line& line, const format::PageHintRecord& r) {
+  line << r.center << r.radius << r.largest_error << r.smallest_error;
+}
+
 template <class Record>
 void print_table(const char* name, std::span<const Record> records) {
   for (std::size_t i = 0; i < records.size(); ++i) {
@@ -159,6 +163,7 @@ int main(int argc, char** argv) {
   print_table("BLBT", asset->blobs());
   print_table("PRMS", asset->promises());
   print_table("PRMG", asset->promise_errors());
+  print_table("PHNT", asset->page_hints());
   for (std::size_t i = 0; i < asset->page_dependencies().size(); ++i) {
     Line("PDEP") << i << asset->page_dependencies()[i];
   }

@@ -17,6 +17,7 @@ done
 for promise in texels appearance; do
   "$meshlode" build "$data/foliage.glb" -o "foliage-$promise.lode" --promise $promise --codec none --aggregate never --quiet || exit 2
 done
+"$meshlode" build "$data/crystal.glb" -o crystal-hints.lode --page-hints --page-size 16 --aggregate never --quiet || exit 2
 for codec in none strips; do
   "$meshlode" build "$data/foliage.glb" -o "aggregate-$codec.lode" --aggregate auto --codec $codec --quiet || exit 2
 done
@@ -36,7 +37,7 @@ for file in *.lode; do
     echo "FAILED: $file"; diff cpp.txt python.txt | head -n 6; failed=1
   fi
 done
-[ "$count" -ge 18 ] || { echo "FAILED: only $count files"; failed=1; }
+[ "$count" -ge 19 ] || { echo "FAILED: only $count files"; failed=1; }
 # Bytes changed, checksums made to fit: the line between what a file may say and what not is the same for both.
 "$python" "$here/differ.py" "$dump" tetrahedron-none.lode "${STRIDE:-17}" || failed=1
 "$python" "$here/differ.py" "$dump" patch-none.lode $((${STRIDE:-17} * 19)) || failed=1
@@ -53,6 +54,8 @@ awk 'BEGIN { for (k = 0; k < 256; ++k) { x = k % 16; y = int(k / 16); z = k * 7 
 printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >triangle.obj
 "$meshlode" build triangle.obj -o triangle.out --grid 1 --codec none --quiet || exit 2
 "$python" "$here/hex_dump.py" "$here/../../docs/reference/format.md" triangle.out || failed=1
+"$meshlode" build triangle.obj -o hinted.out --grid 1 --codec none --page-hints --quiet || exit 2
+"$python" "$here/differ.py" "$dump" hinted.out "${STRIDE:-17}" || failed=1
 # What it cannot read it says so.
 for codec in zstd draco; do
   "$python" "$here/lode.py" "seeds/reader/scene-$codec.lode" >/dev/null 2>refused.txt

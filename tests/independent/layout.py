@@ -125,6 +125,13 @@ size 56""",
 40 f32 level0_texels
 44 f32 level0_appearance
 size 48""",
+    "PHNT": """
+0 f32[3] center
+12 f32 radius
+16 f32 largest_error
+20 f32 smallest_error
+24 u32[2] reserved
+size 32""",
     "PRMG": """
 0 f32 texel_error
 4 f32 appearance_error

@@ -17,7 +17,7 @@ from layout import TABLES_TEXT
 from pages import decode_page
 from rules import Invalid, NONE, Unsupported, check
 from stored import unpack_page
-from tables import check_tables
+from tables import check_tables, hold_hints
 from xxh3 import canonical_128, xxh3_64
 
 FORMATS = {"u8": "B", "u16": "H", "u32": "I", "u64": "Q", "i8": "b", "i16": "h", "i32": "i", "f32": "I", "f64": "Q",
@@ -27,7 +27,8 @@ VERSIONS = (1, 2)
 TEXTS = ("META", "SCNE", "STRS")
 SECTIONS = ("META", "SCNE", "STRS", "MESH", "MATL", "INST", "GRUP", "CLUS", "NODE", "PAGT", "PDEP", "BLBT", "PAGE",
             "BLOB")
-OPTIONAL = ("PRMS", "PRMG")  # both or neither
+PROMISES = ("PRMS", "PRMG")  # both or neither
+OPTIONAL = PROMISES + ("PHNT",)
 
 
 def parse_layout(text):
@@ -76,11 +77,12 @@ class Lode:
         self.read_sections()
         self.tables = {name: self.read_table(name) for name in ("MESH", "MATL", "INST", "GRUP", "CLUS", "NODE", "PAGT",
                                                                  "BLBT")}
-        check(len([name for name in OPTIONAL if name in self.sections]) != 1, "section PRMS", "is there without PRMG, or PRMG without it")
+        check(len([name for name in PROMISES if name in self.sections]) != 1, "section PRMS", "is there without PRMG, or PRMG without it")
         self.tables["version"] = self.header["version"]
         for name in OPTIONAL:
             self.tables[name] = self.read_table(name) if name in self.sections else []
         self.tables["has_promises"] = "PRMS" in self.sections
+        self.tables["has_hints"] = "PHNT" in self.sections
         raw = self.section("PDEP")
         check(len(raw) % 4 == 0, "section PDEP", "is not whole records")
         self.tables["PDEP"] = list(struct.unpack(f"<{len(raw) // 4}I", raw))
@@ -211,7 +213,7 @@ class Lode:
         parts += [self.page_bytes(i) for i in range(len(self.tables["PAGT"]))]
         parts += [head("BLBT"), without("BLBT", ("offset",))]
         parts += [self.data[b["offset"]:b["offset"] + b["bytes"]] for b in self.tables["BLBT"]]
-        for name in OPTIONAL:
+        for name in PROMISES:
             if name in self.sections:
                 parts += [head(name), self.section(name)]
         return canonical_128(b"".join(parts))
@@ -222,7 +224,7 @@ def canonical_lines(lode):
     yield f"lode {lode.header['version']} {bytes(lode.header['content_hash']).hex()}"
     for name in TEXTS:
         yield f"{name} {lode.section(name).hex()}"
-    for name in ("MESH", "MATL", "INST", "GRUP", "CLUS", "NODE", "PAGT", "BLBT", "PRMS", "PRMG"):
+    for name in ("MESH", "MATL", "INST", "GRUP", "CLUS", "NODE", "PAGT", "BLBT", "PRMS", "PRMG", "PHNT"):
         for i, record in enumerate(lode.tables[name]):
             words = []
             for field, _, kind, _ in LAYOUTS[name][1]:
@@ -248,6 +250,7 @@ def read(data, is_complete=True):
         lines = "\n".join(canonical_lines(lode)) + "\n"
         if is_complete:
             lode.check_blobs()
+            hold_hints(lode.tables)
             check(lode.content_hash() == bytes(lode.header["content_hash"]), "header, field content_hash")
     except Invalid as error:
         return 3, str(error)

@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The rules of the tables: ids, ranges, enumerators, and who partitions what (docs/reference/format.md, sections 4 to 11)."""
 
+import math
+import struct
+
 from rules import INFINITE, NONE, check
 
 MAX_PAGE = 131072
@@ -184,6 +187,35 @@ def dependencies_of(index, page, tables):
     return sorted(needed - {index})
 
 
+def check_hints(tables):
+    """Their form; what they say of the groups is for `holds_hints`. Floats are their bits, and finite."""
+    if not tables["has_hints"]:
+        return
+    check(len(tables["PHNT"]) == len(tables["PAGT"]), "section PHNT, field record_count")
+    for i, hint in enumerate(tables["PHNT"]):
+        place = f"section PHNT, record {i}, field "
+        check(hint["radius"] <= INFINITE, place + "radius", "is negative")
+        least, most = hint["smallest_error"], hint["largest_error"]
+        check(least <= INFINITE, place + "smallest_error", "is negative")
+        check(least <= most <= INFINITE, place + "largest_error")
+
+
+def hold_hints(tables):
+    """Rule L217: a hint contains the spheres of its page's groups, and has their largest and smallest error."""
+    def number(bits):
+        return struct.unpack("<f", struct.pack("<I", bits))[0]
+
+    for i, (hint, page) in enumerate(zip(tables["PHNT"], tables["PAGT"])):
+        place = f"section PHNT, record {i}, field "
+        groups = tables["GRUP"][page["first_group"]:page["first_group"] + page["group_count"]]
+        errors = [group["error"] for group in groups]
+        check(hint["largest_error"] == max(errors), place + "largest_error")
+        check(hint["smallest_error"] == min(errors), place + "smallest_error")
+        for group in groups:
+            away = math.dist([number(x) for x in group["center"]], [number(x) for x in hint["center"]])
+            check(away + number(group["radius"]) <= number(hint["radius"]), place + "radius", "does not reach its groups")
+
+
 def check_blobs(tables):
     end = tables["BLOB"]["offset"]
     for i, blob in enumerate(tables["BLBT"]):
@@ -205,4 +237,5 @@ def check_tables(tables):
     check_promises(tables)
     check_nodes(tables)
     check_pages(tables)
+    check_hints(tables)
     check_blobs(tables)

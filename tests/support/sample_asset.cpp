@@ -106,6 +106,7 @@ std::vector<std::uint8_t> sample_asset_bytes(format::Codec codec) {
 }
 
 void add_promises(builder::WriteInput& input) {
+  input.has_page_hints = true;
   input.promises = format::kPromisesTexels | format::kPromisesAppearance;
   for (builder::EncodedMesh& mesh : input.meshes) {
     builder::PromiseErrors errors = builder::promises_of_positions(mesh.record, mesh.groups, input.promises);

@@ -24,11 +24,12 @@ namespace meshlode::test {
 [[nodiscard]] std::vector<std::uint8_t> sample_asset_bytes(format::Codec codec = format::Codec::kNone);
 /// The same for another scene of the same meshes.
 [[nodiscard]] std::vector<std::uint8_t> sample_asset_bytes(const scene::Scene& scene, format::Codec codec);
-/// The asset of sample_scene() with promises of texels and appearance.
+/// The asset of sample_scene() with all sections that are optional: promises of texels and appearance, and page hints.
 [[nodiscard]] std::vector<std::uint8_t> promised_asset_bytes(format::Codec codec = format::Codec::kNone);
 /// The asset of these, with any codec: of those that are not written any more too. Aborts where it cannot be made.
 [[nodiscard]] std::vector<std::uint8_t> write_by(builder::WriteInput input, format::Codec codec);
-/// Promises of texels and appearance for what is about to be written: with the groups' own errors, which are sound.
+/// Page hints, and promises of texels and appearance, for what is about to be written: with the groups' own errors,
+/// which are sound.
 void add_promises(builder::WriteInput& input);
 
 /// An asset with one instance of one mesh; materials are those of sample_scene().

@@ -52,6 +52,15 @@ export function checkHead({ runtime, file, name, expect, refused }) {
   }
   expect(equal === 6 && steps > 0, `${name}: ${equal} of 6 views are the whole's cuts after ${steps} pages`);
 
+  // What has no priority of infinity with nothing resident is not read first, and all else is.
+  selector.select({ eye: [0, 0, 0], fovyRadians: 0.7, nearDistance: 0.001 * diagonal, heightPx: 800 }, 1, new Uint32Array(resident.length));
+  const first = [...pages.keys()].filter((page) => selector.pagePriorities[page] === INFINITE_ERROR);
+  const isIn = (page) => (range) => range.offset <= pages[page].offset && pages[page].offset + pages[page].storedBytes <= range.offset + range.bytes;
+  const ranges = head.firstRanges();
+  const covered = [...pages.keys()].filter((page) => ranges.some(isIn(page)));
+  const one = { offset: pages[first[0]].offset, bytes: pages[first.at(-1)].offset + pages[first.at(-1)].storedBytes - pages[first[0]].offset };
+  expect(isSame(covered, first) && isSame(head.firstRanges(file.length), [one]), `${name}: ${ranges.length} ranges of ${first.length} first pages`);
+
   const loaded = pages.findIndex((_, page) => (resident[page >> 5] >>> (page & 31)) & 1);
   const cluster = pages[loaded].firstCluster;
   const floats = ({ positions, normals, uvs, triangles }) => [positions, normals, ...uvs, triangles].map((array) => array && [...array]);

@@ -217,6 +217,11 @@ export interface Asset {
   largestCluster(): { vertices: number; triangles: number };
   pageDependencies(page: number): Uint32Array;
   streamingOrder(): Uint32Array;
+  /**
+   * Ranges to read before the first picture, ascending: the pages of terminal groups of meshes with instances. Pages with at most
+   * `maxGap` bytes between them share a range, and neighbours always do.
+   */
+  firstRanges(maxGap?: number): { offset: number; bytes: number }[];
   /** Errors: invalid, where the page is broken; unsupported, where its codec is not none or strips. */
   loadPage(page: number): void;
   /** loadPage from bytes of the caller, those of the page's `offset` and `storedBytes`. Errors: also usage, for another number. */

@@ -377,6 +377,24 @@ class Asset {
     }
   }
 
+  /**
+   * Ranges {offset, bytes} to read before the first picture, ascending. Pages with at most `maxGap` bytes between them share one,
+   * and neighbours always do.
+   */
+  firstRanges(maxGap = 0) {
+    const capacity = this.#count('pages'); // no more ranges than pages
+    const frame = new Frame(this.#runtime, 8 + ERROR_BYTES + 16 * capacity);
+    try {
+      const [error, at] = [frame.at + 8, frame.at + 8 + ERROR_BYTES];
+      this.#check(this.#wasm.meshlode_first_ranges(this.#at, BigInt(maxGap), at, capacity, frame.at, error), error);
+      const view = this.#runtime.view();
+      const range = (_, i) => ({ offset: uint64(view, at + 16 * i), bytes: uint64(view, at + 16 * i + 8) });
+      return Array.from({ length: view.getUint32(frame.at, true) }, range);
+    } finally {
+      frame.end();
+    }
+  }
+
   /** Unpacks and checks a page, and keeps it in the module until dropPage(). Of a head: unpackPage(). */
   loadPage(page) {
     this.#keepPage(page, new Uint8Array(0), (from, at, size, error) =>

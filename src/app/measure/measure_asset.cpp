@@ -19,6 +19,7 @@
 #include "builder/prepare/prepare.h"
 #include "builder/write_meta.h"
 #include "format/names.h"
+#include "format/page_hint.h"
 #include "judge/verify/source_parts.h"
 #include "run/decode/decode.h"
 
@@ -31,6 +32,7 @@ struct Tables {
   std::vector<format::MeshRecord> meshes;
   std::vector<format::GroupRecord> groups;
   std::vector<format::NodeRecord> nodes;
+  std::vector<format::PageHintRecord> page_hints;  ///< where the asset has them
 
   explicit Tables(const run::Asset& asset)
       : meshes(asset.meshes().begin(), asset.meshes().end()),
@@ -45,6 +47,7 @@ struct Tables {
     if (section.id == static_cast<std::uint32_t>(format::SectionId::kMeshes)) return bytes(meshes);
     if (section.id == static_cast<std::uint32_t>(format::SectionId::kGroups)) return bytes(groups);
     if (section.id == static_cast<std::uint32_t>(format::SectionId::kNodes)) return bytes(nodes);
+    if (section.id == static_cast<std::uint32_t>(format::SectionId::kPageHints)) return bytes(page_hints);
     return {};
   }
 };
@@ -140,6 +143,11 @@ Result<std::vector<std::uint8_t>> measure_asset(const run::Asset& asset, const s
     const std::string& place = measured.error().where;
     return Error{measured.error().code, "mesh " + std::to_string(m) + (place.empty() ? "" : ", " + place),
                  measured.error().detail};
+  }
+  for (std::size_t p = 0; p < asset.page_hints().size(); ++p) {
+    const format::PageRecord& page = asset.pages()[p];
+    tables.page_hints.push_back(
+        format::make_page_hint(std::span(tables.groups).subspan(page.first_group, page.group_count)));
   }
   const format::Codec codec = codec_of(asset, read_meta(asset.meta_json()));
   return rewrite_asset(asset, {codec, builder::meta_with_codec(builder::meta_with_tier(asset.meta_json(), tier), codec),

@@ -101,7 +101,8 @@ Result<ByteMap> map_bytes(const run::Asset& asset) {
       case SectionId::kPages:
       case SectionId::kPageDeps:
       case SectionId::kPromises:
-      case SectionId::kPromiseErrors: map.table_bytes += section.bytes; break;
+      case SectionId::kPromiseErrors:
+      case SectionId::kPageHints: map.table_bytes += section.bytes; break;
       default: break;
     }
   }

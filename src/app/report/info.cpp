@@ -23,6 +23,7 @@ bool is_geometry(std::uint32_t id) {
     case SectionId::kPageDeps:
     case SectionId::kPromises:
     case SectionId::kPromiseErrors:
+    case SectionId::kPageHints:
     case SectionId::kPageData: return true;
     default: return false;
   }

@@ -28,8 +28,8 @@ constexpr const char* kAdvanced = "Advanced";
 
 constexpr std::array<SettingInfo, kSettingCount> kSettings{{
     {Setting::kFor, "for", "", kQuality,
-     "options by use: web, the smallest download; engine, pages that are mapped; archive, the most accurate; options "
-     "that are given win",
+     "options by use: web, the smallest download; engine, small pages that are mapped; archive, the most accurate; "
+     "options that are given win",
      "any", false},
     {Setting::kErrorTier, "error-tier", "", kQuality,
      "what the stored errors are: estimated (qem), sampled (measured) or proven (certified); auto: the preset's",
@@ -88,6 +88,9 @@ constexpr std::array<SettingInfo, kSettingCount> kSettings{{
      "level", false},
     {Setting::kRootBytes, "root-bytes", " auto|N", "Output",
      "limit of each mesh's first page in bytes, 16384 to 131072; auto: as --page-size", "auto", false},
+    {Setting::kPageHints, "page-hints", "", "Output",
+     "store a sphere and errors of each page, 32 bytes, for readers that weigh pages before they read groups", "false",
+     false},
     {Setting::kTextures, "textures", " keep|resize:N|webp[:Q]", "Output",
      "images: keep, as they are; resize:N, at most N texels along the longer side; webp, colours at quality Q, 1 to "
      "100 (90), all else without loss; or two, as in resize:1024,webp",
@@ -99,10 +102,11 @@ struct UseWord {
   Setting setting;
   const char* word;
 };
-// Measured in docs/guides/choosing-settings.md.
+// Measured in docs/guides/choosing-settings.md; pages in docs/log/streaming.md.
 constexpr UseWord kUseWords[] = {
     {"web", Setting::kStripEffort, "best"},     {"web", Setting::kNormalError, "0.5"},
     {"web", Setting::kUvError, "0.25px"},       {"engine", Setting::kCodec, "none"},
+    {"engine", Setting::kPageSize, "32"},       {"engine", Setting::kPageOrder, "covisible"},
     {"archive", Setting::kPreset, "best"},      {"archive", Setting::kErrorTier, "certified"},
     {"archive", Setting::kNormalError, "0.02"},
 };
@@ -285,6 +289,7 @@ builder::PipelineOptions options_of(const std::array<SettledWord, kSettingCount>
   options.page_kib = parse_count(word(Setting::kPageSize), 16, 128).value_or(options.page_kib);
   options.page_order = value_in(builder::kPageOrderNames, word(Setting::kPageOrder)).value_or(options.page_order);
   options.root_bytes = parse_root_bytes(word(Setting::kRootBytes)).value_or(options.root_bytes);
+  options.page_hints = word(Setting::kPageHints) == "true";
   options.repair = word(Setting::kRepair) == "true";
   options.linear_colors = word(Setting::kLinearColors) == "true";
   options.keep_topology = word(Setting::kKeepTopology) == "true";
@@ -325,7 +330,7 @@ const SettingInfo& info_of(Setting setting) {
 
 bool is_flag(Setting setting) {
   return setting == Setting::kRepair || setting == Setting::kLinearColors || setting == Setting::kKeepTopology ||
-         setting == Setting::kLockBorders;
+         setting == Setting::kLockBorders || setting == Setting::kPageHints;
 }
 
 std::vector<std::string> choices_of(Setting setting) {
@@ -343,7 +348,8 @@ std::vector<std::string> choices_of(Setting setting) {
     case Setting::kRepair:
     case Setting::kLinearColors:
     case Setting::kKeepTopology:
-    case Setting::kLockBorders: return {"false", "true"};
+    case Setting::kLockBorders:
+    case Setting::kPageHints: return {"false", "true"};
     case Setting::kPromise: return all_names(format::kPromiseNames);
     case Setting::kKeepLayers: return {"on", "off"};
     case Setting::kPageSize: return {"16", "32", "64", "128"};

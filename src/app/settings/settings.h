@@ -49,9 +49,10 @@ enum class Setting : std::uint8_t {
   kPageSize,
   kPageOrder,
   kRootBytes,
+  kPageHints,
   kTextures,
 };
-constexpr std::size_t kSettingCount = 25;
+constexpr std::size_t kSettingCount = 26;
 
 struct SettingInfo {
   Setting setting;

@@ -70,6 +70,24 @@ std::vector<std::uint32_t> root_pages(const StreamScene& scene) {
   return pages;
 }
 
+namespace {
+
+/// \param pages  ascending
+std::uint64_t count_reads(const StreamScene& scene, std::span<const std::uint32_t> pages) {
+  std::vector<std::uint8_t> begins_file(scene.pages.size());
+  for (const std::uint32_t mesh : scene.first_mesh_of_file) {
+    const std::uint32_t group = mesh < scene.meshes.size() ? scene.meshes[mesh].first_group : format::kNone;
+    if (group < scene.groups.size()) begins_file[scene.groups[group].page] = 1;
+  }
+  std::uint64_t reads = 0;
+  for (std::size_t i = 0; i < pages.size(); ++i) {
+    reads += i == 0 || pages[i] != pages[i - 1] + 1 || begins_file[pages[i]] != 0 ? 1 : 0;
+  }
+  return reads;
+}
+
+}  // namespace
+
 Demand measure_demand(const StreamScene& scene, std::span<const PathFrame> path, const StreamView& view, bool checks,
                       std::vector<std::string>& findings, std::uint64_t& finding_count) {
   constexpr std::size_t kChunk = 16;  // frames that share a selector
@@ -121,7 +139,9 @@ Demand measure_demand(const StreamScene& scene, std::span<const PathFrame> path,
   }
 
   ResidentPages roots(scene.pages.size());
-  for (const std::uint32_t page : root_pages(scene)) {
+  const std::vector<std::uint32_t> root_ids = root_pages(scene);
+  demand.root_reads = count_reads(scene, root_ids);
+  for (const std::uint32_t page : root_ids) {
     roots.set(page, true);
     demand.root_bytes += scene.pages[page].bytes;
     ++demand.root_pages;

@@ -192,7 +192,7 @@ std::uint64_t StreamScene::stored_bytes() const {
 Result<StreamScene> make_stream_scene(std::span<const run::Asset> assets, std::span<const std::string> names,
                                       std::span<const Placement> placements) {
   StreamScene scene;
-  std::vector<std::uint32_t> first_mesh;
+  std::vector<std::uint32_t>& first_mesh = scene.first_mesh_of_file;
   for (std::size_t i = 0; i < assets.size(); ++i) {
     first_mesh.push_back(static_cast<std::uint32_t>(scene.meshes.size()));
     if (const Status added = add_tables(assets[i], scene); !added) {

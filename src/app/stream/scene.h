@@ -50,9 +50,10 @@ struct StreamScene {
   std::vector<format::ClusterRecord> clusters;
   std::vector<format::NodeRecord> nodes;
   std::vector<StreamPage> pages;
-  std::vector<std::uint32_t> cluster_bytes;  ///< decoded, of each cluster in its page
-  Vec3d low{0.0}, high{0.0};                 ///< of what is drawn
-  double object_radius = 1.0;                ///< half the diagonal of the largest instance
+  std::vector<std::uint32_t> first_mesh_of_file;  ///< of each asset
+  std::vector<std::uint32_t> cluster_bytes;       ///< decoded, of each cluster in its page
+  Vec3d low{0.0}, high{0.0};                      ///< of what is drawn
+  double object_radius = 1.0;                     ///< half the diagonal of the largest instance
 
   [[nodiscard]] run::SelectTables tables() const { return {meshes, instances, groups, clusters, nodes}; }
   [[nodiscard]] std::uint64_t page_bytes() const;    ///< of all pages, decoded

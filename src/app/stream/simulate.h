@@ -49,6 +49,7 @@ struct Demand {
   double drawn_share = 0.0;                      ///< bytes of drawn clusters over those of needed pages, of all frames
   double whole_group_share = 0.0;                ///< the same if each group were a page
   std::uint64_t root_bytes = 0, root_pages = 0;  ///< what is always there
+  std::uint64_t root_reads = 0;                  ///< that get it: neighbours in a file share one
   ErrorShown root_error;                         ///< of the path with these pages alone
 };
 

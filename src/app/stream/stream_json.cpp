@@ -44,6 +44,7 @@ void put_demand(JsonWriter& json, const Demand& demand) {
   json.begin_object();
   json.field("bytes", demand.root_bytes);
   json.field("pages", demand.root_pages);
+  json.field("reads", demand.root_reads);
   put_error(json, "error", demand.root_error);
   json.end_object();
 }

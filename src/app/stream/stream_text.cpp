@@ -116,8 +116,9 @@ std::string stream_text(const StreamReport& report) {
                 static_cast<unsigned long long>(demand.union_pages), to_mb(demand.union_bytes));
   append_format(out, "drawn share    %.1f%% of what a frame needs; %.1f%% if groups were loaded alone\n",
                 100.0 * demand.drawn_share, 100.0 * demand.whole_group_share);
-  append_format(out, "always there   %.2f MB in %s; alone %s px are shown at most\n", to_mb(demand.root_bytes),
-                plural(demand.root_pages, "page").c_str(), short_number(demand.root_error.max_px).c_str());
+  append_format(out, "always there   %.2f MB in %s, %s; alone %s px at most\n", to_mb(demand.root_bytes),
+                plural(demand.root_pages, "page").c_str(), plural(demand.root_reads, "read").c_str(),
+                short_number(demand.root_error.max_px).c_str());
   if (!report.specs.empty()) {
     const std::string one = number("%.3g", asked), four = number("%.3g", 4.0 * asked);
     out += "\n          link        load             ms until       shown, px and area\n";

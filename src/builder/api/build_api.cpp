@@ -101,6 +101,7 @@ Result<builder::PipelineOptions> make_pipeline_options(const BuildOptions& optio
   pipeline.page_kib = options.page_size;
   pipeline.page_order = options.page_order;
   pipeline.root_bytes = options.root_bytes;
+  pipeline.page_hints = options.page_hints;
   pipeline.repair = options.repair;
   pipeline.linear_colors = options.linear_colors;
   pipeline.keep_topology = options.keep_topology;

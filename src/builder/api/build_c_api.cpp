@@ -144,6 +144,7 @@ Result<BuildOptions> read_options(const meshlode_build_options& in) {
   out.page_size = in.page_size;
   out.page_order = static_cast<PageOrder>(in.page_order);
   out.root_bytes = in.root_bytes;
+  out.page_hints = in.page_hints != 0;
   out.grid_step = in.grid_step;
   out.position_error = in.position_error;
   out.normal_error = in.normal_error;
@@ -244,6 +245,7 @@ void meshlode_build_defaults(meshlode_build_options* options) {
   options->page_size = defaults.page_size;
   options->page_order = static_cast<uint32_t>(defaults.page_order);
   options->root_bytes = defaults.root_bytes;
+  options->page_hints = defaults.page_hints ? 1 : 0;
   options->grid_step = defaults.grid_step;
   options->position_error = defaults.position_error;
   options->normal_error = defaults.normal_error;

@@ -105,7 +105,7 @@ void add_own_options(KeyHasher& key, const MeshOptions& own) {
 void add_scene_options(KeyHasher& key, const SceneOptions& options) {
   const auto& [preset, codec, strip_effort, partition_seed, repair, linear_colors, promise, keep_topology, keep_layers,
                max_cluster_triangles, max_cluster_vertices, group_clusters, page_kib, page_order, root_bytes,
-               max_memory, mesh_store, looks, textures, images, hooks, mesh_options] = options;
+               page_hints, max_memory, mesh_store, looks, textures, images, hooks, mesh_options] = options;
   key.value(preset);
   key.value(partition_seed);
   key.value(max_cluster_triangles);
@@ -119,6 +119,7 @@ void add_scene_options(KeyHasher& key, const SceneOptions& options) {
   static_cast<void>(strip_effort);   // EncodeOptions has what it came to
   static_cast<void>(page_kib);       // the same
   static_cast<void>(root_bytes);     // the same
+  static_cast<void>(page_hints);     // of the whole asset
   static_cast<void>(keep_layers);    // the gaps say what came of it
   static_cast<void>(codec);          // of the pages on disk, later
   static_cast<void>(repair);         // the triangles are as they are

@@ -9,6 +9,7 @@
 #include "base/parallel.h"
 #include "base/try.h"
 #include "builder/write/instance_scale.h"
+#include "format/page_hint.h"
 
 namespace meshlode::builder {
 
@@ -166,6 +167,12 @@ Result<AssetTables> make_tables(WriteInput& input) {
     out.instances.push_back(instance_record(instance, out.strings));
   }
   for (const scene::SceneBlob& blob : input.all_blobs()) out.blobs.push_back(blob_record(blob, out.strings));
+  if (input.has_page_hints) {
+    for (const format::PageRecord& page : out.pages) {
+      out.page_hints.push_back(
+          format::make_page_hint(std::span(out.groups).subspan(page.first_group, page.group_count)));
+    }
+  }
   parallel_for_each_index(out.pages.size(), 4,
                           [&](std::size_t p) { out.pages[p].decoded_checksum = hash64(out.page_bytes[p]); });
   if (out.strings.bytes().size() >= std::numeric_limits<std::uint32_t>::max()) {

@@ -38,6 +38,7 @@ struct AssetTables {
   std::vector<std::uint32_t> page_dependencies;
   std::vector<format::PromiseMeshRecord> promises;         ///< one a mesh where WriteInput has promises, else none
   std::vector<format::PromiseGroupRecord> promise_errors;  ///< one a group, or none
+  std::vector<format::PageHintRecord> page_hints;          ///< one a page where WriteInput has them, else none
   std::vector<format::BlobRecord> blobs;                   ///< offset not set yet
   std::vector<std::vector<std::uint8_t>> page_bytes;       ///< decoded, PageHeader::first_cluster global
 };

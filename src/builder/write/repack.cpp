@@ -33,6 +33,7 @@ bool is_known(format::SectionId id) {
     case format::SectionId::kPageDeps:
     case format::SectionId::kPromises:
     case format::SectionId::kPromiseErrors:
+    case format::SectionId::kPageHints:
     case format::SectionId::kPageData:
     case format::SectionId::kBlobs:
     case format::SectionId::kBlobData: return true;

@@ -95,6 +95,10 @@ SectionPlans plan_sections(const WriteInput& input, const AssetTables& tables, s
     plans.push_back(table_section(kPromiseErrors, tables.promise_errors));
     plans.back().flags = 0;
   }
+  if (input.has_page_hints) {
+    plans.push_back(table_section(kPageHints, tables.page_hints));
+    plans.back().flags = 0;
+  }
   plans.push_back(SectionPlan{kPageData, page_data_bytes, nullptr, 0, 0});
   plans.push_back(SectionPlan{kBlobData, blob_data_bytes, nullptr, 0, 0});
   return plans;

@@ -24,6 +24,7 @@ struct WriteInput {
   const std::string* document = nullptr;                         ///< with these
   std::string meta_json;                                         ///< kMeta, already serialised
   format::Codec codec = format::Codec::kNone;
+  bool has_page_hints = false;
   std::uint32_t promises = 0;  ///< format::kPromises…: what the meshes have errors for; 0: no section says so
 
   [[nodiscard]] const std::vector<scene::SceneBlob>& all_blobs() const {

@@ -37,6 +37,7 @@ constexpr KnownSection kKnownSections[] = {
     {SectionId::kPageDeps, sizeof(std::uint32_t)},
     {SectionId::kPromises, sizeof(format::PromiseMeshRecord), true},
     {SectionId::kPromiseErrors, sizeof(format::PromiseGroupRecord), true},
+    {SectionId::kPageHints, sizeof(format::PageHintRecord), true},
     {SectionId::kPageData, 0},
     {SectionId::kBlobs, sizeof(format::BlobRecord)},
     {SectionId::kBlobData, 0},
@@ -246,6 +247,10 @@ bool take_section(FileTables& file, const SectionEntry& entry) {
     case SectionId::kPromiseErrors:
       file.has_promise_errors = true;
       copy_records(bytes, file.promise_errors);
+      break;
+    case SectionId::kPageHints:
+      file.has_page_hints = true;
+      copy_records(bytes, file.page_hints);
       break;
     case SectionId::kPageData: file.page_data = entry; break;
     case SectionId::kBlobs: copy_records(bytes, file.blobs); break;

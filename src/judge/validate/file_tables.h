@@ -65,6 +65,8 @@ struct FileTables {
   bool has_promises = false, has_promise_errors = false;  ///< whether the sections are there
   std::vector<format::PromiseMeshRecord> promises;
   std::vector<format::PromiseGroupRecord> promise_errors;
+  bool has_page_hints = false;  ///< whether the section is there
+  std::vector<format::PageHintRecord> page_hints;
   std::string_view meta, scene, strings;
   MetaFacts facts;                   ///< of meta
   format::SectionEntry page_data{};  ///< zero where the section is missing

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The page table: partition of groups and clusters, places in the file, dependencies (L201, L202, L213).
+// The page table: partition of groups and clusters, places in the file, dependencies (L201, L202, L213),
+// hints (L217).
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <string>
 #include <vector>
@@ -112,13 +114,49 @@ void check_dependencies(const FileTables& file, RuleLog& log) {
   }
 }
 
+void check_hint(const FileTables& file, std::size_t p, RuleLog& log) {
+  const format::PageHintRecord& hint = file.page_hints[p];
+  const auto at = [&] { return place("PHNT, page", p); };
+  log.expect(hint.reserved[0] == 0 && hint.reserved[1] == 0, Rule::kL103, at,
+             [] { return std::string("reserved is not zero"); });
+  float most = 0.0F, least = format::kInfiniteError;
+  bool contains = true;
+  for (std::uint32_t k = 0; k < file.pages[p].group_count; ++k) {
+    const format::GroupRecord& group = file.groups[file.pages[p].first_group + k];
+    most = std::max(most, group.error);
+    least = std::min(least, group.error);
+    const double x = double{group.center[0]} - double{hint.center[0]};
+    const double y = double{group.center[1]} - double{hint.center[1]};
+    const double z = double{group.center[2]} - double{hint.center[2]};
+    contains &= std::sqrt(x * x + y * y + z * z) + double{group.radius} <= double{hint.radius};
+  }
+  log.expect(contains || hint.radius == format::kInfiniteError, Rule::kL217, at,
+             [] { return std::string("the sphere does not contain those of its groups"); });
+  log.expect(hint.largest_error == most, Rule::kL217, at, [&] {
+    return differs("largest_error", double{hint.largest_error}, "largest of its groups", double{most});
+  });
+  log.expect(hint.smallest_error == least, Rule::kL217, at, [&] {
+    return differs("smallest_error", double{hint.smallest_error}, "smallest of its groups", double{least});
+  });
+}
+
+/// \pre check_ranges()
+void check_hints(const FileTables& file, RuleLog& log) {
+  if (!file.has_page_hints) return;
+  const bool is_whole = log.expect(
+      file.page_hints.size() == file.pages.size(), Rule::kL217, [] { return std::string("PHNT"); },
+      [] { return std::string("has not one record for each page"); });
+  for (std::size_t p = 0; is_whole && p < file.page_hints.size(); ++p) check_hint(file, p, log);
+}
+
 }  // namespace
 
 bool check_page_table(const FileTables& file, RuleLog& log) {
-  for (const Rule rule : {Rule::kL201, Rule::kL202, Rule::kL213}) log.check(rule);
+  for (const Rule rule : {Rule::kL201, Rule::kL202, Rule::kL213, Rule::kL217}) log.check(rule);
   const bool ranges = check_ranges(file, log);
   const bool places = check_places(file, log);
   if (ranges) check_dependencies(file, log);
+  if (ranges) check_hints(file, log);
   return ranges && places;
 }
 

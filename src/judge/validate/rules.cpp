@@ -70,6 +70,9 @@ constexpr std::array kRules{
     RULE(L214, "", "unused bits and padding in a page are zero"),
     RULE(L215, "I3", "a stored normal has the one pair of values that its direction has in its chart"),
     RULE(L216, "I1", "the strips of a cluster start in order, each with a left turn"),
+    RULE(L217, "",
+         "page hints, where a file has them, are one for each page: a sphere that contains the LOD spheres of its "
+         "groups, and their largest and smallest error"),
     // DAG
     RULE(L301, "I5", "level-0 clusters and no others lack an own group"),
     RULE(L302, "I5", "a cluster's coarser group is the group that lists it"),

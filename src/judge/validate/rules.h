@@ -26,6 +26,7 @@ enum class Rule : std::uint8_t {
   kL117,
   // pages
   kL201, kL202, kL203, kL204, kL205, kL206, kL207, kL208, kL209, kL210, kL211, kL212, kL213, kL214, kL215, kL216,
+  kL217,
   // DAG
   kL301, kL302, kL303, kL304, kL305, kL306, kL307, kL308, kL309, kL310, kL311, kL312, kL313,
   // hierarchy

@@ -3,10 +3,12 @@
 // and selection by what is there.
 #include <optional>
 
+#include "format/page_hint.h"
 #include "run/api/c_shared.h"
 #include "run/read/find_image.h"
 #include "run/read/sections.h"
 #include "run/select/resident.h"
+#include "run/select/streaming_order.h"
 #include "run/unpack/unpack.h"
 
 struct meshlode_selector {
@@ -83,6 +85,27 @@ uint32_t meshlode_blob_of_image(const meshlode_asset* asset, uint32_t image) {
 meshlode_range meshlode_page_range(const meshlode_asset* asset, uint32_t page) {
   if (page >= asset->asset.pages().size()) return {0, 0};
   return {asset->asset.pages()[page].offset, asset->asset.pages()[page].stored_bytes};
+}
+
+meshlode_hint meshlode_page_hint(const meshlode_asset* asset, uint32_t page) {
+  meshlode_hint out{};
+  if (page >= asset->asset.pages().size()) return out;
+  const format::PageRecord& record = asset->asset.pages()[page];
+  const format::PageHintRecord hint =
+      format::make_page_hint(asset->asset.groups().subspan(record.first_group, record.group_count));
+  static_assert(sizeof(out) == sizeof(hint));
+  std::memcpy(&out, &hint, sizeof(out));
+  return out;
+}
+
+meshlode_status meshlode_first_ranges(const meshlode_asset* asset, uint64_t max_gap, meshlode_range* ranges,
+                                      size_t capacity, size_t* count, meshlode_error* error) {
+  return guard(error, [&] {
+    const std::vector<run::FileRange> found = run::first_ranges(asset->asset, max_gap);
+    *count = found.size();
+    for (std::size_t i = 0; i < std::min(capacity, found.size()); ++i) ranges[i] = {found[i].offset, found[i].bytes};
+    return found.size() <= capacity ? succeed(error) : fail(error, MESHLODE_TOO_SMALL, "more ranges than capacity");
+  });
 }
 
 meshlode_status meshlode_unpack_page(const meshlode_asset* asset, uint32_t page, const void* stored, size_t size,

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "base/try.h"
+#include "format/page_hint.h"
 #include "run/api/camera_of_view.h"
 #include "run/decode/decode.h"
 #include "run/read/asset.h"
@@ -259,6 +260,18 @@ Result<UniformCut> AssetFile::select_uniform(std::uint32_t mesh, double max_erro
 
 std::vector<std::uint32_t> AssetFile::streaming_order() const {
   return run::streaming_order(state_->asset);
+}
+
+format::PageHintRecord AssetFile::page_hint(std::uint32_t page) const {
+  return format::make_page_hint(groups().subspan(pages()[page].first_group, pages()[page].group_count));
+}
+
+std::vector<ByteRange> AssetFile::first_ranges(std::uint64_t max_gap) const {
+  std::vector<ByteRange> ranges;
+  for (const run::FileRange& range : run::first_ranges(state_->asset, max_gap)) {
+    ranges.push_back({range.offset, range.bytes});
+  }
+  return ranges;
 }
 
 std::uint32_t AssetFile::page_of(std::uint32_t cluster) const {

@@ -153,14 +153,17 @@ Status Asset::index(std::uint64_t file_bytes) {
   if (promise_errors != nullptr) {
     tables.promise_errors = view_table<format::PromiseGroupRecord>(section_bytes(*promise_errors));
   }
+  const format::SectionEntry* const page_hints = sections->find(kPageHints);
+  tables.has_page_hints = page_hints != nullptr;
+  if (page_hints != nullptr) tables.page_hints = view_table<format::PageHintRecord>(section_bytes(*page_hints));
   tables.string_bytes = sections->entry(kStrings).decoded_bytes;
   tables.page_data = &sections->entry(kPageData);
   tables.blob_data = &sections->entry(kBlobData);
 
   using Check = Status (*)(const RawTables&);
-  for (const Check check :
-       {Check{check_meshes}, Check{check_materials}, Check{check_instances}, Check{check_blobs}, Check{check_groups},
-        Check{check_clusters}, Check{check_nodes}, Check{check_pages}, Check{check_promises}}) {
+  for (const Check check : {Check{check_meshes}, Check{check_materials}, Check{check_instances}, Check{check_blobs},
+                            Check{check_groups}, Check{check_clusters}, Check{check_nodes}, Check{check_pages},
+                            Check{check_promises}, Check{check_page_hints}}) {
     if (Status status = check(tables); !status) return status;
   }
 
@@ -183,6 +186,7 @@ Status Asset::index(std::uint64_t file_bytes) {
   blobs_ = tables.blobs;
   promises_ = tables.promises;
   promise_errors_ = tables.promise_errors;
+  page_hints_ = tables.page_hints;
   meta_ = view_text(bytes_of(kMeta));
   scene_ = view_text(bytes_of(kScene));
   strings_ = view_text(bytes_of(kStrings));

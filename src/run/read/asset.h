@@ -58,6 +58,8 @@ class Asset {
   /// One a mesh, and one a group; empty where the asset promises positions alone (or has no mesh, or no group).
   [[nodiscard]] std::span<const format::PromiseMeshRecord> promises() const { return promises_; }
   [[nodiscard]] std::span<const format::PromiseGroupRecord> promise_errors() const { return promise_errors_; }
+  /// One a page, of the errors of positions; empty where the file has none. Nothing holds them against the groups here.
+  [[nodiscard]] std::span<const format::PageHintRecord> page_hints() const { return page_hints_; }
   /// Whether choose() will do: positions always, else where the asset was built to promise it or more.
   [[nodiscard]] bool has_promise(format::Promise promise) const;
   /// From here on `error` of groups() and nodes(), and `level0_deviation` of meshes(), are those of this promise, so
@@ -103,6 +105,7 @@ class Asset {
   std::span<const format::BlobRecord> blobs_;
   std::span<const format::PromiseMeshRecord> promises_;
   std::span<const format::PromiseGroupRecord> promise_errors_;
+  std::span<const format::PageHintRecord> page_hints_;
   std::string_view meta_, scene_, strings_;
   format::Promise chosen_ = format::Promise::kPosition;
   // Of the chosen promise, where it is not that of positions.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The page table: pages partition groups and clusters, lie one after the other, and depend only on earlier ones.
+#include <cmath>
 #include <string>
 
 #include "run/read/check_tables.h"
@@ -106,6 +107,31 @@ Status check_pages(const RawTables& tables) {
   }
   if (data_end != tables.page_data->offset + tables.page_data->bytes) {
     return invalid_record(SectionId::kPages, count, "offset", "bytes of section PAGE are left over");
+  }
+  return Ok{};
+}
+
+Status check_page_hints(const RawTables& tables) {
+  if (!tables.has_page_hints) return Ok{};
+  if (tables.page_hints.size() != tables.pages.size()) {
+    return Error{ErrorCode::kInvalid, "section PHNT, field record_count", "must be the number of pages"};
+  }
+  for (std::size_t p = 0; p < tables.page_hints.size(); ++p) {
+    const format::PageHintRecord& hint = tables.page_hints[p];
+    const auto fail = [&](const char* field, const char* detail) {
+      return invalid_record(SectionId::kPageHints, p, field, detail);
+    };
+    for (const float middle : hint.center) {
+      if (!std::isfinite(middle)) return fail("center", "must be finite");
+    }
+    if (!std::isfinite(hint.radius) || std::signbit(hint.radius)) return fail("radius", "must be finite, at least 0");
+    if (!std::isfinite(hint.largest_error) || hint.largest_error < hint.smallest_error ||
+        std::signbit(hint.largest_error)) {
+      return fail("largest_error", "must be finite, and not below smallest_error");
+    }
+    if (!(hint.smallest_error >= 0.0F) || std::signbit(hint.smallest_error)) {
+      return fail("smallest_error", "must be finite, at least 0");
+    }
   }
   return Ok{};
 }

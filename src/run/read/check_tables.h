@@ -26,6 +26,8 @@ struct RawTables {
   bool has_promises = false;  ///< of the two tables below one is there at least
   std::span<const format::PromiseMeshRecord> promises;
   std::span<const format::PromiseGroupRecord> promise_errors;
+  bool has_page_hints = false;
+  std::span<const format::PageHintRecord> page_hints;
   std::uint64_t string_bytes = 0;
   const format::SectionEntry* page_data = nullptr;
   const format::SectionEntry* blob_data = nullptr;
@@ -46,5 +48,6 @@ constexpr std::uint32_t kMaxBvhDepth = 64;
 [[nodiscard]] Status check_nodes(const RawTables& tables);     ///< \pre check_meshes; each BVH is a tree
 [[nodiscard]] Status check_pages(const RawTables& tables);     ///< \pre check_groups; pages partition groups
 [[nodiscard]] Status check_promises(const RawTables& tables);  ///< \pre check_groups
+[[nodiscard]] Status check_page_hints(const RawTables& tables);
 
 }  // namespace meshlode::run

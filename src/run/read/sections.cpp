@@ -42,6 +42,7 @@ constexpr std::array kKnownSections{
     KnownSection{SectionId::kBlobs, sizeof(format::BlobRecord)},
     KnownSection{SectionId::kPromises, sizeof(format::PromiseMeshRecord), true},
     KnownSection{SectionId::kPromiseErrors, sizeof(format::PromiseGroupRecord), true},
+    KnownSection{SectionId::kPageHints, sizeof(format::PageHintRecord), true},
     KnownSection{SectionId::kPageData, 0},
     KnownSection{SectionId::kBlobData, 0},
 };

@@ -35,4 +35,27 @@ std::vector<std::uint32_t> streaming_order(const Asset& asset) {
   return order;
 }
 
+std::vector<FileRange> first_ranges(const Asset& asset, std::uint64_t max_gap) {
+  constexpr std::uint64_t kPadding = format::kSectionAlignment - 1;  // between neighbours, at most
+  std::vector<std::uint8_t> is_drawn(asset.meshes().size());
+  for (const format::InstanceRecord& instance : asset.instances()) {
+    if ((instance.flags & format::kInstanceSingular) == 0) is_drawn[instance.mesh] = 1;
+  }
+  std::vector<FileRange> ranges;
+  for (const format::PageRecord& page : asset.pages()) {  // ascending in the file too
+    const auto groups = asset.groups().subspan(page.first_group, page.group_count);
+    const bool is_first = std::any_of(groups.begin(), groups.end(), [&](const format::GroupRecord& group) {
+      return (group.flags & format::kGroupTerminal) != 0 && is_drawn[group.mesh] != 0;
+    });
+    if (!is_first) continue;
+    const std::uint64_t end = ranges.empty() ? 0 : ranges.back().offset + ranges.back().bytes;
+    if (!ranges.empty() && page.offset - end <= std::max(max_gap, kPadding)) {
+      ranges.back().bytes = page.offset + page.stored_bytes - ranges.back().offset;
+    } else {
+      ranges.push_back({page.offset, page.stored_bytes});
+    }
+  }
+  return ranges;
+}
+
 }  // namespace meshlode::run

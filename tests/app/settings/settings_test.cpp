@@ -160,13 +160,16 @@ TEST(Settings, AUseDecidesWhatIsNotGiven) {
   ASSERT_TRUE(settled);
   EXPECT_EQ(settled->options.codec, format::Codec::kNone);
   EXPECT_EQ((*settled)[Setting::kCodec].from, "for engine");
-  EXPECT_EQ(describe_use(*settled), "for engine: codec none");
+  EXPECT_EQ(settled->options.page_kib, 32U);
+  EXPECT_EQ(settled->options.page_order, PageOrder::kCovisible);
+  EXPECT_EQ(describe_use(*settled), "for engine: codec none, page-size 32, page-order covisible");
   EXPECT_EQ(describe_use(*settle({})), "");
 }
 
 TEST(Settings, WhatIsGivenAnywhereWinsOverAUse) {
-  const std::array layers{layer_of({{Setting::kCodec, "strips"}}, "a file"),
-                          layer_of({{Setting::kFor, "engine"}}, "the command line")};
+  const std::array layers{
+      layer_of({{Setting::kCodec, "strips"}, {Setting::kPageSize, "128"}, {Setting::kPageOrder, "level"}}, "a file"),
+      layer_of({{Setting::kFor, "engine"}}, "the command line")};
   const auto settled = settle(layers);
   EXPECT_EQ(settled->options.codec, format::Codec::kStrips);
   EXPECT_EQ((*settled)[Setting::kCodec].from, "a file");

@@ -165,8 +165,20 @@ TEST(Simulate, DemandIsWhatAFrameNeeds) {
   const Demand demand = simulate(chain_scene(2), stand(1), small_view(), {}, {.checks = true}).demand;
   EXPECT_EQ(demand.max_bytes, 5000U) << "the mesh in view, and the root of the other";
   EXPECT_EQ(demand.root_pages, 2U);
+  EXPECT_EQ(demand.root_reads, 2U) << "other pages lie between them";
   EXPECT_NEAR(demand.drawn_share, 4 * 494.0 / 5000.0, 1e-12);
   EXPECT_NEAR(demand.whole_group_share, 4 * 494.0 / (4 * 988.0), 1e-12);
+}
+
+TEST(Simulate, NeighboursInAFileAreOneRead) {
+  StreamScene scene = chain_scene(2);
+  for (format::GroupRecord& group : scene.groups) group.flags = format::kGroupTerminal;  // each page is a root
+  EXPECT_EQ(simulate(scene, stand(1), small_view(), {}).demand.root_pages, 8U);
+  EXPECT_EQ(simulate(scene, stand(1), small_view(), {}).demand.root_reads, 1U);
+  scene.first_mesh_of_file = {0, 1};
+  EXPECT_EQ(simulate(scene, stand(1), small_view(), {}).demand.root_reads, 2U);
+  scene.first_mesh_of_file = {0, 0, 2};  // files without meshes
+  EXPECT_EQ(simulate(scene, stand(1), small_view(), {}).demand.root_reads, 1U);
 }
 
 TEST(CutCheck, FindsWhatIsWrongWithACut) {

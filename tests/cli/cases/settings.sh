@@ -76,7 +76,7 @@ tell given.lode
 "$MESHLODE" plan in/city.glb --for web | sed -n '/^settings/,/^attributes/p'
 echo '{"for": "engine"}' >in/meshlode.json
 code build --quiet in/city.glb -o engine.lode --cache kept
-code build --quiet in/city.glb -o by-hand.lode --no-settings-file --codec none --cache kept
+code build --quiet in/city.glb -o by-hand.lode --no-settings-file --codec none --page-size 32 --page-order covisible --cache kept
 cmp engine.lode by-hand.lode && echo "the same asset, and the same entry of the cache: $(ls kept/record | wc -l)"
 run build in/city.glb -o x.lode --for engines
 echo '{"meshes": {"*": {"for": "web"}}}' >in/meshlode.json

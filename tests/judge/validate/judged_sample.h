@@ -13,7 +13,7 @@
 namespace meshlode::test {
 
 /// support/sample_asset.h's scene; its META names the scene's source hash. With promises: of texels and appearance,
-/// with the groups' own errors.
+/// with the groups' own errors; and with page hints.
 [[nodiscard]] std::vector<std::uint8_t> judged_sample_bytes(format::Codec codec = format::Codec::kNone,
                                                             bool has_promises = false);
 

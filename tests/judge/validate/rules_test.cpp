@@ -172,6 +172,14 @@ void promised_error(AssetEdit& e, const Change& change) {
       e.offset_of<format::PromiseGroupRecord>(SectionId::kPromiseErrors, inner_group(e)), change);
 }
 
+/// The hint of a page that has a group which is not terminal, changed.
+template <class Change>
+void hint(AssetEdit& e, const Change& change) {
+  e = promised();
+  const std::uint32_t page = e.groups()[inner_group(e)].page;
+  e.change_at<format::PageHintRecord>(e.offset_of<format::PageHintRecord>(SectionId::kPageHints, page), change);
+}
+
 TEST(Validate, FindsNothingInPromises) {
   for (const format::Codec codec : {format::Codec::kNone, format::Codec::kStrips}) {
     const ValidationReport report = validate_asset(test::judged_sample_bytes(codec, true));
@@ -434,6 +442,17 @@ const std::vector<Break>& breaks() {
        [](AssetEdit& e) { promise(e, 0, [](auto& p) { p.level0_texels = -1.0F; }); }},
       {"L117", "level 0 below its texels",
        [](AssetEdit& e) { promise(e, 0, [](auto& p) { p.level0_texels = 2.0F * p.level0_appearance + 1.0F; }); }},
+      {"L217", "a hint fewer than pages",
+       [](AssetEdit& e) {
+         e = promised();
+         e.entry(SectionId::kPageHints, [](auto& s) { s.record_count -= 1, s.bytes -= 32, s.decoded_bytes -= 32; });
+       }},
+      {"L217", "a sphere that is too small", [](AssetEdit& e) { hint(e, [](auto& h) { h.radius *= 0.99F; }); }},
+      {"L217", "a sphere elsewhere", [](AssetEdit& e) { hint(e, [](auto& h) { h.center[1] += h.radius; }); }},
+      {"L217", "an error below its groups", [](AssetEdit& e) { hint(e, [](auto& h) { h.largest_error *= 0.99F; }); }},
+      {"L217", "a smallest error that none has",
+       [](AssetEdit& e) { hint(e, [](auto& h) { h.smallest_error *= 0.5F; }); }},
+      {"L103", "a hint with more", [](AssetEdit& e) { hint(e, [](auto& h) { h.reserved[1] = 1; }); }},
       {"L313", "texels below positions",
        [](AssetEdit& e) { promised_error(e, [](auto& p) { p.texel_error *= 0.9F; }); }},
       {"L313", "appearance below texels",

@@ -88,7 +88,7 @@ std::string settings_text(const builder::PipelineOptions& options, const scene::
       static_cast<const builder::MeshOptions&>(options);
   const auto& [preset, codec, strip_effort, partition_seed, repair, linear_colors, promise, keep_topology, keep_layers,
                max_cluster_triangles, max_cluster_vertices, group_clusters, page_kib, page_order, root_bytes,
-               max_memory, mesh_store, looks, textures, images, hooks, mesh_options] =
+               page_hints, max_memory, mesh_store, looks, textures, images, hooks, mesh_options] =
       static_cast<const builder::SceneOptions&>(options);
   const auto& [import_repair, scene, files_read, max_decoded, may_lack_images, allow_outside, import_linear] = import;
   static_cast<void>(mesh_options);     // not known before the import: mesh_rules_text()
@@ -124,6 +124,7 @@ std::string settings_text(const builder::PipelineOptions& options, const scene::
       {"page-size", text_of(std::uint64_t{page_kib})},
       {"page-order", builder::name_of(page_order)},
       {"root-bytes", text_of(std::uint64_t{root_bytes})},
+      {"page-hints", text_of(page_hints)},
       {"textures", builder::texture_word(textures)},
       // Whether, not what; but images that take more stay as they are.
       {"max-decoded", textures.is_keep() ? "any" : text_of(max_decoded)},
