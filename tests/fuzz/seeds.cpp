@@ -146,6 +146,11 @@ int main(int argc, char** argv) {
     write(folder / "textures" / name, behind({1}, textured));
     write(folder / "render" / name, behind(near_camera, textured));
     write(folder / "head" / name, behind({255, 0, 12, 3}, textured));
+    // All sections that are optional.
+    const std::string optional = codec == format::Codec::kNone ? "optional-none.lode" : "optional-strips.lode";
+    const Bytes all = test::promised_asset_bytes(codec);
+    for (const char* of : {"reader", "judge"}) write(folder / of / optional, all);
+    write(folder / "head" / optional, behind({173, 0, 30, 8}, all));
     write(folder / "verify" / name, behind({0, 0, 0, 0, 0, 0, 0, 0}, textured));
   }
   for (const auto& [codec, name] : format::kCodecNames) {

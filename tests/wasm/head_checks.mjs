@@ -54,7 +54,8 @@ export function checkHead({ runtime, file, name, expect, refused }) {
 
   // What has no priority of infinity with nothing resident is not read first, and all else is.
   selector.select({ eye: [0, 0, 0], fovyRadians: 0.7, nearDistance: 0.001 * diagonal, heightPx: 800 }, 1, new Uint32Array(resident.length));
-  const first = [...pages.keys()].filter((page) => selector.pagePriorities[page] === INFINITE_ERROR);
+  const nothing = selector.pagePriorities;
+  const first = [...pages.keys()].filter((page) => nothing[page] === 3.4028234663852886e38);
   const isIn = (page) => (range) => range.offset <= pages[page].offset && pages[page].offset + pages[page].storedBytes <= range.offset + range.bytes;
   const ranges = head.firstRanges();
   const covered = [...pages.keys()].filter((page) => ranges.some(isIn(page)));
