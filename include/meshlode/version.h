@@ -6,7 +6,7 @@
 #define MESHLODE_VERSION_H
 
 #define MESHLODE_VERSION_MAJOR 0 /**< grows with incompatible changes, from 1.0 on */
-#define MESHLODE_VERSION_MINOR 1 /**< grows with new functions; before 1.0 also with incompatible changes */
+#define MESHLODE_VERSION_MINOR 2 /**< grows with new functions; before 1.0 also with incompatible changes */
 #define MESHLODE_VERSION_PATCH 0 /**< grows with fixes */
 
 /** One number to compare: major * 10000 + minor * 100 + patch. */
