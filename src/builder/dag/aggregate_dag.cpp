@@ -271,9 +271,8 @@ class AggregateDag {
   /// Of a page, at most; 0 where pages have no limit.
   [[nodiscard]] std::size_t bytes_of(ClusterId cluster) const {
     if (options_.max_group_bytes == 0) return 0;
-    const BuildPool::ClusterUse use = pool_.use_of(cluster);
-    return options_.cluster_bytes(static_cast<std::uint32_t>(use.wedges.size()), pool_.cluster(cluster).triangle_count,
-                                  use.materials);
+    const BuildCluster& asked = pool_.cluster(cluster);
+    return options_.cluster_bytes(asked.vertex_count, asked.triangle_count, pool_.count_materials(asked));
   }
   [[nodiscard]] bool does_not_fit(std::size_t bytes) const {
     return options_.max_group_bytes > 0 && bytes > options_.max_group_bytes;

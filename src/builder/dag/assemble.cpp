@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <numeric>
+#include <span>
 #include <vector>
 
-#include "base/local_ids.h"
+#include "base/ids.h"
 #include "base/parallel.h"
 #include "base/release.h"
 #include "builder/dag/level_pool.h"
@@ -14,50 +16,41 @@ namespace meshlode::builder {
 
 namespace {
 
-/// A cluster's triangles in the order of the DAG (by material, stable), with vertices numbered by first use.
-struct OrderedCluster {
-  std::vector<std::uint32_t> triangles;  ///< of the pool
-  LocalIds wedges;
-
-  OrderedCluster(const BuildPool& pool, const BuildCluster& source)
-      : triangles(source.triangle_count), wedges(source.triangle_count) {
-    std::iota(triangles.begin(), triangles.end(), source.first_triangle);
-    const auto before = [&](std::uint32_t a, std::uint32_t b) {
-      return material_of(pool.triangle_material[a]) < material_of(pool.triangle_material[b]);
-    };
-    if (!std::is_sorted(triangles.begin(), triangles.end(), before)) {
-      std::stable_sort(triangles.begin(), triangles.end(), before);
-    }
-    for (const std::uint32_t t : triangles) {
-      for (const std::uint32_t wedge : pool.triangles[t]) wedges.add(wedge);
-    }
-  }
-};
-
-/// Writes a cluster's triangles to the places that it was given, and of its vertices the wedges.
+/// Writes a cluster's triangles to the places that it was given, by material, stable, and of its vertices the wedges:
+/// by first use again where the triangles come in another order.
 void write_cluster(const BuildPool& pool, const BuildCluster& source, const DagCluster& cluster, LodDag& dag,
                    std::vector<std::uint32_t>& wedge_of_vertex) {
-  OrderedCluster ordered(pool, source);
-  for (std::size_t i = 0; i < ordered.triangles.size(); ++i) {
-    const std::uint32_t t = ordered.triangles[i];
+  std::array<std::uint32_t, 256> order;
+  const std::span<std::uint32_t> triangles = std::span(order).first(source.triangle_count);
+  std::iota(triangles.begin(), triangles.end(), source.first_triangle);
+  const auto before = [&](std::uint32_t a, std::uint32_t b) {
+    return material_of(pool.triangle_material[a]) < material_of(pool.triangle_material[b]);
+  };
+  if (!std::is_sorted(triangles.begin(), triangles.end(), before)) {
+    std::stable_sort(triangles.begin(), triangles.end(), before);
+  }
+  std::array<std::uint32_t, 256> number;  // by vertex as it was; kNoId: not met yet
+  number.fill(kNoId);
+  const std::span<const std::uint32_t> vertices = pool.vertices_of(source);
+  std::uint32_t count = 0;
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    const std::uint32_t t = triangles[i];
     for (std::size_t k = 0; k < 3; ++k) {
-      dag.triangles[cluster.first_triangle + i][k] =
-          static_cast<std::uint8_t>(ordered.wedges.add(pool.triangles[t][k]));
+      const std::uint8_t vertex = pool.triangles[t][k];
+      if (number[vertex] == kNoId) {
+        wedge_of_vertex[cluster.first_vertex + count] = vertices[vertex];
+        number[vertex] = count++;
+      }
+      dag.triangles[cluster.first_triangle + i][k] = static_cast<std::uint8_t>(number[vertex]);
     }
     dag.triangle_material[cluster.first_triangle + i] = material_of(pool.triangle_material[t]);
   }
-  std::copy(ordered.wedges.numbers().begin(), ordered.wedges.numbers().end(),
-            wedge_of_vertex.begin() + cluster.first_vertex);
 }
 
-/// Counts the vertices of every cluster, gives each its place, and writes them all. `sources`: of the pool, in order.
+/// Gives every cluster its place and writes them all. `sources`: of the pool, in order.
 /// What has been written is freed in the pool, so that little of it is there twice.
 void write_clusters(BuildPool& pool, const std::vector<ClusterId>& sources, std::size_t stride, LodDag& dag) {
   constexpr std::size_t kGrain = 16;
-  parallel_for_each_index(sources.size(), kGrain, [&](std::size_t i) {
-    const OrderedCluster ordered(pool, pool.cluster(sources[i]));
-    dag.clusters[i].vertex_count = static_cast<std::uint32_t>(ordered.wedges.size());
-  });
   std::uint32_t vertices = 0, triangles = 0;
   for (DagCluster& cluster : dag.clusters) {
     cluster.first_vertex = vertices;
@@ -71,7 +64,7 @@ void write_clusters(BuildPool& pool, const std::vector<ClusterId>& sources, std:
   parallel_for_each_index(sources.size(), kGrain, [&](std::size_t i) {
     write_cluster(pool, pool.cluster(sources[i]), dag.clusters[i], dag, wedge_of_vertex);
   });
-  release(pool.triangles, pool.clusters, pool.groups);
+  release(pool.triangles, pool.vertices, pool.clusters, pool.groups);
   pool.triangle_material = {};
   dag.vertex_position.resize(vertices);
   parallel_for_each_index(vertices, kLoopGrain, [&](std::size_t v) {
@@ -126,6 +119,7 @@ LodDag assemble_dag(BuildPool&& pool, const PreparedMesh& mesh) {
       cluster.coarser_group = GroupId(new_group[g]);
       if (made.own_group.is_valid()) cluster.own_group = GroupId(new_group[made.own_group.value]);
       cluster.triangle_count = made.triangle_count;
+      cluster.vertex_count = made.vertex_count;
       dag.level_count = std::max(dag.level_count, cluster.level + 1);
       dag.clusters.push_back(cluster);
       sources.push_back(c);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "builder/dag/group_input.h"
 
+#include <vector>
+
 #include "base/local_ids.h"
 
 namespace meshlode::builder {
@@ -15,33 +17,33 @@ SimplifyInput group_input(const BuildPool& pool, const PreparedMesh& mesh, const
   for (const ClusterId c : clusters) triangle_count += pool.cluster(c).triangle_count;
   input.triangles.reserve(triangle_count);
   input.triangle_material.reserve(triangle_count);
+  LocalIds wedges(triangle_count);
+  std::vector<std::uint32_t> met;  // of the vertices of all clusters, by local id
   for (const ClusterId c : clusters) {
-    const BuildCluster& cluster = pool.cluster(c);
-    const auto first = static_cast<std::ptrdiff_t>(cluster.first_triangle);
-    const auto last = first + static_cast<std::ptrdiff_t>(cluster.triangle_count);
-    input.triangles.insert(input.triangles.end(), pool.triangles.begin() + first, pool.triangles.begin() + last);
-    for (std::size_t t = cluster.first_triangle; t < std::size_t{cluster.first_triangle} + cluster.triangle_count;
-         ++t) {
-      input.triangle_material.push_back(pool.triangle_material[t]);
-    }
-  }
-  LocalIds wedges(input.triangles.size());
-  for (WedgeTriangle& triangle : input.triangles) {
-    for (std::uint32_t& wedge : triangle) wedge = wedges.add(wedge);
+    for (const std::uint32_t wedge : pool.vertices_of(pool.cluster(c))) met.push_back(wedges.add(wedge));
   }
   const std::vector<std::uint32_t> wedge_place = wedges.sort();
-  for (WedgeTriangle& triangle : input.triangles) {
-    for (std::uint32_t& wedge : triangle) wedge = wedge_place[wedge];
+  for (std::uint32_t& wedge : met) wedge = wedge_place[wedge];
+  const std::uint32_t* own = met.data();
+  for (const ClusterId c : clusters) {
+    const BuildCluster& cluster = pool.cluster(c);
+    for (std::size_t t = cluster.first_triangle; t < std::size_t{cluster.first_triangle} + cluster.triangle_count;
+         ++t) {
+      const auto [i, j, k] = pool.triangles[t];
+      input.triangles.push_back({own[i], own[j], own[k]});
+      input.triangle_material.push_back(pool.triangle_material[t]);
+    }
+    own += cluster.vertex_count;
   }
   LocalIds positions(wedges.size());
   input.wedge_position.reserve(wedges.size());
   input.is_wedge_shared.reserve(wedges.size());
-  input.wedge_attributes.reserve(stride * wedges.size());
+  input.wedge_attributes.resize(stride * wedges.size());
+  float* attributes = input.wedge_attributes.data();
   for (const std::uint32_t w : wedges.numbers()) {
     input.wedge_position.push_back(positions.add(pool.wedge_position[w]));
     input.is_wedge_shared.push_back(shared.wedge(w));
-    const auto first = pool.wedge_attributes.begin() + static_cast<std::ptrdiff_t>(w * stride);
-    input.wedge_attributes.insert(input.wedge_attributes.end(), first, first + static_cast<std::ptrdiff_t>(stride));
+    for (std::size_t j = 0; j < stride; ++j) *attributes++ = pool.wedge_attributes[w * stride + j];
   }
   const std::vector<std::uint32_t> position_place = positions.sort();
   for (std::uint32_t& position : input.wedge_position) position = position_place[position];

@@ -64,6 +64,7 @@ BuildPool::BuildPool(PreparedMesh& mesh, const CoarserLevels& coarser)
       position_table_(positions.size() + coarser.positions),
       wedge_table_(wedge_position.size() + coarser.wedges) {
   triangles.reserve(mesh.triangles.size() + coarser.triangles);
+  vertices.reserve(triangles.capacity());
   triangle_material.expect(triangles.capacity());
   if (has_witnesses_) {
     witnesses.reserve(positions.capacity());
@@ -125,37 +126,65 @@ std::uint32_t BuildPool::wedge_id(std::uint32_t position, const float* attribute
   return entry.id;
 }
 
-std::vector<std::uint32_t> BuildPool::add_ranges(const Clustering& clustering, std::uint32_t level, GroupId own_group) {
-  std::vector<std::uint32_t> start(clustering.count + 1, 0);
-  for (const std::uint32_t label : clustering.label) ++start[label + 1];
-  start[0] = static_cast<std::uint32_t>(triangles.size());
-  for (std::size_t i = 1; i < start.size(); ++i) start[i] += start[i - 1];
-  for (std::uint32_t c = 0; c < clustering.count; ++c) {
-    clusters.push_back({level, own_group, start[c], start[c + 1] - start[c]});
+ClusterId BuildPool::add_clusters(const Clustering& clustering, std::uint32_t level, GroupId own_group) {
+  const ClusterId first(clusters.size());
+  clusters.resize(clusters.size() + clustering.count, {level, own_group});
+  for (const std::uint32_t label : clustering.label) ++clusters[first.value + label].triangle_count;
+  auto next = static_cast<std::uint32_t>(triangles.size());
+  for (std::size_t c = first.value; c < clusters.size(); ++c) {
+    clusters[c].first_triangle = next;
+    next += clusters[c].triangle_count;
   }
-  triangles.resize(triangles.size() + clustering.label.size());
-  return start;
+  triangles.resize(next);
+  return first;
 }
 
-void BuildPool::fill_clusters(std::span<const WedgeTriangle> source, std::span<const std::uint32_t> wedges,
-                              std::span<const std::uint32_t> materials, const Clustering& clustering,
-                              std::vector<std::uint32_t> start) {
-  // Places are dealt out in order, one after the other; what goes there is written side by side.
-  std::vector<std::uint32_t> slot(source.size());
-  for (std::size_t t = 0; t < source.size(); ++t) slot[t] = start[clustering.label[t]]++;
-  parallel_for_each_index(source.size(), kLoopGrain, [&](std::size_t t) {
-    WedgeTriangle& triangle = triangles[slot[t]];
-    triangle = source[t];
-    for (std::size_t k = 0; !wedges.empty() && k < 3; ++k) triangle[k] = wedges[triangle[k]];
-    triangle_material.set(slot[t], materials[t]);
+std::vector<std::vector<std::uint32_t>> BuildPool::fill_clusters(std::span<const WedgeTriangle> source,
+                                                                 std::span<const std::uint32_t> wedges,
+                                                                 std::span<const std::uint32_t> materials,
+                                                                 const Clustering& clustering, ClusterId first) {
+  constexpr std::size_t kClusters = 64;  // a task
+  const std::span<BuildCluster> filled = std::span(clusters).subspan(first.value, clustering.count);
+  std::vector<std::uint32_t> members(source.size()), next(clustering.count);
+  const std::uint32_t base = filled.empty() ? 0 : filled.front().first_triangle;
+  for (std::size_t c = 0; c < filled.size(); ++c) next[c] = filled[c].first_triangle - base;
+  for (std::uint32_t t = 0; t < source.size(); ++t) members[next[clustering.label[t]]++] = t;
+  std::vector<std::vector<std::uint32_t>> parts(chunk_count(filled.size(), kClusters));
+  parallel_for_each_chunk(filled.size(), kClusters, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+    LocalIds local(256);
+    std::vector<std::uint32_t>& part = parts[chunk];
+    for (BuildCluster& cluster : filled.subspan(begin, end - begin)) {
+      local.clear();
+      for (std::uint32_t at = cluster.first_triangle; at < cluster.first_triangle + cluster.triangle_count; ++at) {
+        const std::uint32_t t = members[at - base];
+        for (std::size_t k = 0; k < 3; ++k) {
+          const std::uint32_t wedge = wedges.empty() ? source[t][k] : wedges[source[t][k]];
+          triangles[at][k] = static_cast<std::uint8_t>(local.add(wedge));
+        }
+        triangle_material.set(at, materials[t]);
+      }
+      cluster.vertex_count = static_cast<std::uint32_t>(local.size());
+      part.insert(part.end(), local.numbers().begin(), local.numbers().end());
+    }
   });
+  return parts;
+}
+
+void BuildPool::add_vertices(const std::vector<std::vector<std::uint32_t>>& parts, ClusterId first,
+                             std::uint32_t count) {
+  auto next = static_cast<std::uint32_t>(vertices.size());
+  for (BuildCluster& cluster : std::span(clusters).subspan(first.value, count)) {
+    cluster.first_vertex = next;
+    next += cluster.vertex_count;
+  }
+  for (const std::vector<std::uint32_t>& part : parts) vertices.insert(vertices.end(), part.begin(), part.end());
 }
 
 void BuildPool::add_level0(const std::vector<WedgeTriangle>& source, const std::vector<std::uint32_t>& materials,
                            const Clustering& clustering) {
-  std::vector<std::uint32_t> start = add_ranges(clustering, 0, GroupId());
+  const ClusterId first = add_clusters(clustering, 0, GroupId());
   triangle_material.add(materials);
-  fill_clusters(source, {}, materials, clustering, std::move(start));
+  add_vertices(fill_clusters(source, {}, materials, clustering, first), first, clustering.count);
 }
 
 BuildPool::Ids BuildPool::find_known(const SimplifyResult& result) const {
@@ -222,17 +251,18 @@ void BuildPool::insert_new(const SimplifyResult& result, Ids& ids) {
 void BuildPool::add_simplified(std::span<const NewClusters> added) {
   std::vector<Ids> ids(added.size());
   parallel_for_each_index(added.size(), 1, [&](std::size_t g) { ids[g] = find_known(added[g].result); });
-  std::vector<std::vector<std::uint32_t>> start(added.size());
+  std::vector<ClusterId> first(added.size());
   for (std::size_t g = 0; g < added.size(); ++g) {
     insert_new(added[g].result, ids[g]);
-    start[g] = add_ranges(added[g].clustering, added[g].level, added[g].own_group);
+    first[g] = add_clusters(added[g].clustering, added[g].level, added[g].own_group);
     triangle_material.add(added[g].result.triangle_material);
   }
+  std::vector<std::vector<std::vector<std::uint32_t>>> parts(added.size());
   parallel_for_each_index(added.size(), 1, [&](std::size_t g) {
-    const NewClusters& group = added[g];
-    fill_clusters(group.result.triangles, ids[g].wedges, group.result.triangle_material, group.clustering,
-                  std::move(start[g]));
+    const SimplifyResult& result = added[g].result;
+    parts[g] = fill_clusters(result.triangles, ids[g].wedges, result.triangle_material, added[g].clustering, first[g]);
   });
+  for (std::size_t g = 0; g < added.size(); ++g) add_vertices(parts[g], first[g], added[g].clustering.count);
 }
 
 void BuildPool::end_round() {
@@ -246,21 +276,23 @@ void BuildPool::finish() {
   release(witnesses, late_witnesses_);
 }
 
-BuildPool::ClusterUse BuildPool::use_of(ClusterId id) const {
-  const BuildCluster& c = cluster(id);
-  LocalIds wedges(c.triangle_count), used_positions(c.triangle_count), materials(1);
-  for (std::uint32_t t = c.first_triangle; t < c.first_triangle + c.triangle_count; ++t) {
-    for (const std::uint32_t wedge : triangles[t]) wedges.add(wedge);
+std::vector<std::uint32_t> BuildPool::positions_of(const BuildCluster& cluster) const {
+  std::vector<std::uint32_t> ids;
+  ids.reserve(cluster.vertex_count);
+  for (const std::uint32_t wedge : vertices_of(cluster)) ids.push_back(wedge_position[wedge]);
+  std::sort(ids.begin(), ids.end());
+  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+  return ids;
+}
+
+std::uint32_t BuildPool::count_materials(const BuildCluster& cluster) const {
+  std::vector<std::uint32_t> materials;
+  for (std::uint32_t t = cluster.first_triangle; t < cluster.first_triangle + cluster.triangle_count; ++t) {
     const std::uint32_t material = material_of(triangle_material[t]);
-    if (t == c.first_triangle || material != material_of(triangle_material[t - 1])) materials.add(material);
+    if (materials.empty() || material != materials.back()) materials.push_back(material);
   }
-  for (const std::uint32_t wedge : wedges.numbers()) used_positions.add(wedge_position[wedge]);
-  ClusterUse use;
-  use.wedges = wedges.numbers();
-  use.materials = static_cast<std::uint32_t>(materials.size());
-  use.positions = used_positions.numbers();
-  std::sort(use.positions.begin(), use.positions.end());
-  return use;
+  std::sort(materials.begin(), materials.end());
+  return static_cast<std::uint32_t>(std::unique(materials.begin(), materials.end()) - materials.begin());
 }
 
 }  // namespace meshlode::builder

@@ -19,11 +19,12 @@
 
 namespace meshlode::builder {
 
-/// A cluster under construction: a range of BuildPool::triangles.
+/// A cluster under construction: ranges of BuildPool::triangles and BuildPool::vertices.
 struct BuildCluster {
   std::uint32_t level = 0;
   GroupId own_group;  ///< of BuildPool::groups; invalid at level 0
   std::uint32_t first_triangle = 0, triangle_count = 0;
+  std::uint32_t first_vertex = 0, vertex_count = 0;
 };
 
 /// A group that has been replaced by coarser clusters.
@@ -78,12 +79,12 @@ class BuildPool {
   /// Nothing will be added or simplified any more: frees what only that needs.
   void finish();
 
-  /// Of a cluster: its distinct positions, ascending, its distinct wedges, and how many materials it has.
-  struct ClusterUse {
-    std::vector<std::uint32_t> positions, wedges;
-    std::uint32_t materials = 0;
-  };
-  [[nodiscard]] ClusterUse use_of(ClusterId cluster) const;
+  [[nodiscard]] std::span<const std::uint32_t> vertices_of(const BuildCluster& cluster) const {
+    return std::span(vertices).subspan(cluster.first_vertex, cluster.vertex_count);
+  }
+  /// The distinct positions of a cluster, ascending.
+  [[nodiscard]] std::vector<std::uint32_t> positions_of(const BuildCluster& cluster) const;
+  [[nodiscard]] std::uint32_t count_materials(const BuildCluster& cluster) const;
 
   [[nodiscard]] Witnesses witnesses_at(std::uint32_t position) const;
   [[nodiscard]] BuildCluster& cluster(ClusterId id) { return clusters[id.value]; }
@@ -94,7 +95,8 @@ class BuildPool {
   std::vector<WitnessIds> witnesses;  ///< per position; empty where there are none
   std::vector<std::uint32_t> wedge_position;
   std::vector<float> wedge_attributes;
-  std::vector<WedgeTriangle> triangles;
+  std::vector<std::array<std::uint8_t, 3>> triangles;  ///< of the vertices of their cluster
+  std::vector<std::uint32_t> vertices;                 ///< of each cluster its wedges, by first use
   TriangleMaterials triangle_material;
   std::vector<BuildCluster> clusters;
   std::vector<BuildGroup> groups;
@@ -108,12 +110,15 @@ class BuildPool {
   void insert_new(const SimplifyResult& result, Ids& ids);
   void prefetch_wedge(const SimplifyResult& result, const Ids& ids, std::size_t wedge) const;
   void add_witnesses(std::uint32_t position, const WitnessIds& more);
-  /// Makes room for clusters; returns where the triangles of each go.
-  std::vector<std::uint32_t> add_ranges(const Clustering& clustering, std::uint32_t level, GroupId own_group);
-  /// `start`: of add_ranges. `wedges`: pool ids by the ids in `source`, or nothing where they are pool ids already.
-  void fill_clusters(std::span<const WedgeTriangle> source, std::span<const std::uint32_t> wedges,
-                     std::span<const std::uint32_t> materials, const Clustering& clustering,
-                     std::vector<std::uint32_t> start);
+  /// Adds clusters and makes room for their triangles. Returns the first one.
+  ClusterId add_clusters(const Clustering& clustering, std::uint32_t level, GroupId own_group);
+  /// Fills clusters from `first` on. `wedges`: pool ids by the ids in `source`, or nothing where they are pool ids
+  /// already. Returns the clusters' vertices, one after the other in parts, for add_vertices().
+  std::vector<std::vector<std::uint32_t>> fill_clusters(std::span<const WedgeTriangle> source,
+                                                        std::span<const std::uint32_t> wedges,
+                                                        std::span<const std::uint32_t> materials,
+                                                        const Clustering& clustering, ClusterId first);
+  void add_vertices(const std::vector<std::vector<std::uint32_t>>& parts, ClusterId first, std::uint32_t count);
 
   std::uint32_t position_id(const Vec3i& position);
   std::uint32_t wedge_id(std::uint32_t position, const float* attributes);

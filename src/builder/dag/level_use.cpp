@@ -12,20 +12,21 @@ namespace meshlode::builder {
 namespace {
 
 /// The lists one after the other, under dense ids; `first` says where each begins, and the last ends.
-void join_lists(const std::vector<BuildPool::ClusterUse>& uses, std::vector<std::uint32_t> BuildPool::ClusterUse::*list,
-                std::size_t limit, DenseIds& dense, std::vector<std::uint32_t>& first,
-                std::vector<std::uint32_t>& joined) {
+template <class ListOf>
+void join_lists(std::size_t count, const ListOf& list_of, std::size_t limit, DenseIds& dense,
+                std::vector<std::uint32_t>& first, std::vector<std::uint32_t>& joined) {
   dense = DenseIds(limit);
-  first.assign(uses.size() + 1, 0);
-  for (std::size_t i = 0; i < uses.size(); ++i) {
-    for (const std::uint32_t id : uses[i].*list) dense.add(id);
-    first[i + 1] = first[i] + static_cast<std::uint32_t>((uses[i].*list).size());
+  first.assign(count + 1, 0);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::span<const std::uint32_t> list = list_of(i);
+    for (const std::uint32_t id : list) dense.add(id);
+    first[i + 1] = first[i] + static_cast<std::uint32_t>(list.size());
   }
   dense.finish();
   joined.resize(first.back());
-  parallel_for_each_index(uses.size(), 64, [&](std::size_t i) {
-    std::transform((uses[i].*list).begin(), (uses[i].*list).end(), joined.begin() + first[i],
-                   [&](std::uint32_t id) { return dense[id]; });
+  parallel_for_each_index(count, 64, [&](std::size_t i) {
+    const std::span<const std::uint32_t> list = list_of(i);
+    std::transform(list.begin(), list.end(), joined.begin() + first[i], [&](std::uint32_t id) { return dense[id]; });
   });
 }
 
@@ -49,26 +50,29 @@ std::vector<std::uint8_t> find_shared(const std::vector<std::uint32_t>& first, c
 
 LevelUse use_of_level(const BuildPool& pool, const std::vector<ClusterId>& live, const DagOptions& options) {
   LevelUse use;
-  std::vector<BuildPool::ClusterUse> uses(live.size());
+  std::vector<std::vector<std::uint32_t>> positions(live.size());
   use.grouping.weights.assign(live.size(), 0);
   use.grouping.centers.resize(live.size());
   parallel_for_each_index(live.size(), 16, [&](std::size_t i) {
-    uses[i] = pool.use_of(live[i]);
+    const BuildCluster& cluster = pool.cluster(live[i]);
+    positions[i] = pool.positions_of(cluster);
     Vec3d sum(0.0);
-    for (const std::uint32_t p : uses[i].positions) sum += Vec3d(pool.positions[p]);
-    use.grouping.centers[i] = sum / static_cast<double>(std::max<std::size_t>(1, uses[i].positions.size()));
+    for (const std::uint32_t p : positions[i]) sum += Vec3d(pool.positions[p]);
+    use.grouping.centers[i] = sum / static_cast<double>(std::max<std::size_t>(1, positions[i].size()));
     if (options.max_group_bytes == 0) return;
-    const auto wedges = static_cast<std::uint32_t>(uses[i].wedges.size());
-    use.grouping.weights[i] = options.cluster_bytes(wedges, pool.cluster(live[i]).triangle_count, uses[i].materials);
+    use.grouping.weights[i] =
+        options.cluster_bytes(cluster.vertex_count, cluster.triangle_count, pool.count_materials(cluster));
   });
   parallel_all(
       [&] {
-        join_lists(uses, &BuildPool::ClusterUse::positions, pool.positions.size(), use.dense_positions,
-                   use.grouping.first_position, use.grouping.positions);
+        join_lists(
+            live.size(), [&](std::size_t i) { return std::span<const std::uint32_t>(positions[i]); },
+            pool.positions.size(), use.dense_positions, use.grouping.first_position, use.grouping.positions);
       },
       [&] {
-        join_lists(uses, &BuildPool::ClusterUse::wedges, pool.wedge_position.size(), use.dense_wedges, use.first_wedge,
-                   use.wedges);
+        join_lists(
+            live.size(), [&](std::size_t i) { return pool.vertices_of(pool.cluster(live[i])); },
+            pool.wedge_position.size(), use.dense_wedges, use.first_wedge, use.wedges);
       });
   use.grouping.position_count = use.dense_positions.count();
   return use;
