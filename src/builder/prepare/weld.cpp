@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <numeric>
 #include <tuple>
 
 #include <tbb/parallel_sort.h>
@@ -50,14 +51,17 @@ int compare_attributes(const float* a, const float* b, std::uint32_t stride) {
 /// positions and source points become runs, whatever their numbers were.
 UnsetVector<std::uint32_t> canonical_vertex_order(const Corners& corners, std::span<const Vec3i> quantized,
                                                   std::uint32_t stride) {
-  UnsetVector<std::uint64_t> keys(quantized.size());
-  UnsetVector<std::uint32_t> order(quantized.size());
-  parallel_for_each_index(keys.size(), kLoopGrain, [&](std::size_t i) {
-    keys[i] = morton(quantized[i]);
-    order[i] = static_cast<std::uint32_t>(i);
+  struct Placed {
+    std::uint64_t key;
+    std::uint32_t vertex;
+  };
+  UnsetVector<Placed> placed(quantized.size());
+  parallel_for_each_index(placed.size(), kLoopGrain, [&](std::size_t i) {
+    placed[i] = {morton(quantized[i]), static_cast<std::uint32_t>(i)};
   });
-  tbb::parallel_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-    if (keys[a] != keys[b]) return keys[a] < keys[b];
+  tbb::parallel_sort(placed.begin(), placed.end(), [&](const Placed& x, const Placed& y) {
+    if (x.key != y.key) return x.key < y.key;
+    const std::uint32_t a = x.vertex, b = y.vertex;
     if (quantized[a] != quantized[b]) return as_tuple(quantized[a]) < as_tuple(quantized[b]);
     const int attributes =
         compare_attributes(corners.attributes_of(a, stride), corners.attributes_of(b, stride), stride);
@@ -67,6 +71,8 @@ UnsetVector<std::uint32_t> canonical_vertex_order(const Corners& corners, std::s
     if (p != q) return std::tuple(p.x, p.y, p.z) < std::tuple(q.x, q.y, q.z);
     return a < b;
   });
+  UnsetVector<std::uint32_t> order(placed.size());
+  parallel_for_each_index(order.size(), kLoopGrain, [&](std::size_t i) { order[i] = placed[i].vertex; });
   return order;
 }
 
@@ -154,17 +160,31 @@ struct CanonicalTriangle {
   }
 };
 
-/// In order, and each once; counts what was there more often.
+/// In order, and each once; counts what was there more often. By counting: a vertex is the smallest one of a handful.
 UnsetVector<CanonicalTriangle> weld_triangles(const Corners& corners, std::span<const std::uint32_t> exact_of,
-                                              std::uint64_t& duplicates) {
-  UnsetVector<CanonicalTriangle> triangles(corners.materials.size());
-  parallel_for_each_index(triangles.size(), kLoopGrain, [&](std::size_t t) {
+                                              std::size_t exact_count, std::uint64_t& duplicates) {
+  const std::size_t count = corners.materials.size();
+  const auto corners_of = [&](std::size_t t) {
     const std::uint32_t* c = &corners.triangles[3 * t];
-    std::array<std::uint32_t, 3> exact{exact_of[c[0]], exact_of[c[1]], exact_of[c[2]]};
+    return std::array{exact_of[c[0]], exact_of[c[1]], exact_of[c[2]]};
+  };
+  std::vector<std::uint32_t> end(exact_count + 1, 0);  // of each vertex's triangles, once they are in place
+  for (std::size_t t = 0; t < count; ++t) {
+    const std::array<std::uint32_t, 3> exact = corners_of(t);
+    ++end[*std::min_element(exact.begin(), exact.end()) + 1];
+  }
+  std::partial_sum(end.begin(), end.end(), end.begin());
+  UnsetVector<CanonicalTriangle> triangles(count);
+  for (std::size_t t = 0; t < count; ++t) {
+    std::array<std::uint32_t, 3> exact = corners_of(t);
     std::rotate(exact.begin(), std::min_element(exact.begin(), exact.end()), exact.end());
-    triangles[t] = {exact, corners.materials[t]};
+    triangles[end[exact[0]]++] = {exact, corners.materials[t]};
+  }
+  parallel_for_each_chunk(exact_count, kLoopGrain, [&](std::size_t, std::size_t first, std::size_t last) {
+    for (std::size_t v = first; v < last; ++v) {
+      std::sort(triangles.begin() + (v == 0 ? 0 : end[v - 1]), triangles.begin() + end[v]);
+    }
   });
-  tbb::parallel_sort(triangles.begin(), triangles.end());
   const auto unique_end =
       std::unique(triangles.begin(), triangles.end(),
                   [](const CanonicalTriangle& a, const CanonicalTriangle& b) { return a.is_duplicate_of(b); });
@@ -204,7 +224,8 @@ void keep_flat_normals(const Corners& corners, const std::vector<std::uint8_t>& 
 void weld(const Corners& corners, std::span<const Vec3i> points, const std::vector<std::uint8_t>& is_used,
           bool keeps_normals, PreparedMesh& mesh) {
   const VertexIds ids = weld_vertices(corners, points, is_used, mesh);
-  UnsetVector<CanonicalTriangle> triangles = weld_triangles(corners, ids.exact_of, mesh.dropped_duplicate);
+  UnsetVector<CanonicalTriangle> triangles =
+      weld_triangles(corners, ids.exact_of, mesh.exact_positions.size(), mesh.dropped_duplicate);
   resize_all(triangles.size(), mesh.triangles, mesh.exact_triangles, mesh.triangle_material);
   std::vector<std::uint32_t> collapsed(chunk_count(triangles.size(), kLoopGrain), 0);
   parallel_for_each_chunk(triangles.size(), kLoopGrain, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
