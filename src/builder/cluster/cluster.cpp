@@ -29,17 +29,17 @@ struct Range {
 
 /// Cuts a range in two at the median of its longest axis. \returns where the second half begins: a multiple of the
 /// target from the first.
-std::size_t cut_in_two(std::span<const glm::i64vec3> centers, std::size_t target, const Range& range,
+std::size_t cut_in_two(std::span<const Vec3i> centers, std::size_t target, const Range& range,
                        std::span<std::uint32_t> order) {
   const auto begin = order.begin() + static_cast<std::ptrdiff_t>(range.begin);
   const auto end = order.begin() + static_cast<std::ptrdiff_t>(range.end);
-  glm::i64vec3 low = centers[*begin];
-  glm::i64vec3 high = low;
+  Vec3i low = centers[*begin];
+  Vec3i high = low;
   for (auto it = begin; it != end; ++it) {
     low = glm::min(low, centers[*it]);
     high = glm::max(high, centers[*it]);
   }
-  const glm::i64vec3 extent = high - low;
+  const Vec3i extent = high - low;
   const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : (extent.y >= extent.z ? 1 : 2);
   const std::size_t left = ((range.end - range.begin) / 2 + target / 2) / target * target;
   // Place and triangle as one number each, side by side: through `order` every comparison would go to two of the
@@ -55,7 +55,7 @@ std::size_t cut_in_two(std::span<const glm::i64vec3> centers, std::size_t target
 /// Splits triangles into chunks at medians. All chunks but those at the far ends hold a multiple of the target, so that
 /// their clusters come out full. `order` is permuted; each chunk's part of it is ascending. Ranges that are as deep as
 /// each other are cut side by side.
-std::vector<Range> split_into_chunks(std::span<const glm::i64vec3> centers, std::size_t target,
+std::vector<Range> split_into_chunks(std::span<const Vec3i> centers, std::size_t target,
                                      std::span<std::uint32_t> order) {
   std::vector<Range> ranges{{0, order.size()}};
   const auto is_large = [](const Range& range) { return range.end - range.begin > kChunkTriangles; };
@@ -156,11 +156,11 @@ Clustering cluster_surface(std::span<const WedgeTriangle> triangles, std::span<c
   if (triangles.empty()) return {};
   if (triangles.size() <= kChunkTriangles) return cluster_chunk(triangles, wedge_position, positions, caps);
 
-  UnsetVector<glm::i64vec3> centers(triangles.size());  // times three: exact
+  UnsetVector<Vec3i> centers(triangles.size());  // times three: exact, coordinates have 24 bits
   UnsetVector<std::uint32_t> order(triangles.size());
   parallel_for_each_index(triangles.size(), kLoopGrain, [&](std::size_t t) {
-    centers[t] = glm::i64vec3(0);
-    for (const std::uint32_t wedge : triangles[t]) centers[t] += glm::i64vec3(positions[wedge_position[wedge]]);
+    centers[t] = Vec3i(0);
+    for (const std::uint32_t wedge : triangles[t]) centers[t] += positions[wedge_position[wedge]];
     order[t] = static_cast<std::uint32_t>(t);
   });
   const std::vector<Range> chunks = split_into_chunks(centers, caps.target_triangles, order);

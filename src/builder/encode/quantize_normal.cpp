@@ -10,6 +10,7 @@ namespace meshlode::builder {
 namespace {
 
 using Lattice = std::array<std::int32_t, 3>;
+using Pair = double __attribute__((vector_size(16)));
 
 /// Nearest integer point of X + Y + Z = m, X, Y, Z >= 0, to a direction of the positive octant. The mirror image of a
 /// point across a coordinate plane never has the larger dot product, so the search may stay in the octant.
@@ -17,31 +18,38 @@ Lattice nearest_in_octant(double x, double y, double z, std::int32_t m) {
   const double to_plane = m / (x + y + z);
   // One that is such a point but for the rounding of its floats, as what was snapped before is.
   constexpr double kOnPoint = 1.0 / 64;
-  const double near_x = std::floor(x * to_plane + 0.5), near_y = std::floor(y * to_plane + 0.5);
+  const auto near_x = static_cast<std::int32_t>(x * to_plane + 0.5);
+  const auto near_y = static_cast<std::int32_t>(y * to_plane + 0.5);
   if (std::abs(x * to_plane - near_x) < kOnPoint && std::abs(y * to_plane - near_y) < kOnPoint &&
       near_x + near_y <= m) {
-    return {static_cast<std::int32_t>(near_x), static_cast<std::int32_t>(near_y),
-            m - static_cast<std::int32_t>(near_x + near_y)};
+    return {near_x, near_y, m - (near_x + near_y)};
   }
-  const auto x0 = static_cast<std::int32_t>(std::floor(x * to_plane));
-  const auto y0 = static_cast<std::int32_t>(std::floor(y * to_plane));
+  const auto x0 = static_cast<std::int32_t>(x * to_plane), y0 = static_cast<std::int32_t>(y * to_plane);
   // Seen from the origin the lattice is stretched by up to sqrt(3) at the octahedron's tips, so the nearest point need
   // not be a corner of the lattice cell that contains the direction: one more row on each side is tried.
-  Lattice best{0, 0, m};
+  const std::int32_t first_x = std::max(x0 - 1, 0), first_y = std::max(y0 - 1, 0);
+  std::int32_t best = 0;  // 4 rows of 4
   double best_cosine_squared = -1.0;
-  for (std::int32_t cx = std::max(x0 - 1, 0); cx <= std::min(x0 + 2, m); ++cx) {
-    for (std::int32_t cy = std::max(y0 - 1, 0); cy <= std::min(y0 + 2, m - cx); ++cy) {
-      const std::int32_t cz = m - cx - cy;
-      const double dot = x * cx + y * cy + z * cz;
-      const double length_squared = double(cx) * cx + double(cy) * cy + double(cz) * cz;
-      const double cosine_squared = dot * dot / length_squared;
-      if (cosine_squared > best_cosine_squared) {
-        best_cosine_squared = cosine_squared;
-        best = {cx, cy, cz};
-      }
+  for (std::int32_t i = 0; i < 4; ++i) {
+    const std::int32_t cx = first_x + i, most_y = std::min(y0 + 2, m - cx);
+    if (cx > x0 + 2 || first_y > most_y) break;
+    std::array<Pair, 2> cosine_squared;
+    for (std::int32_t half = 0; half < 2; ++half) {
+      const double y_of_first = first_y + 2 * half, left = m - cx;
+      const Pair px{double(cx), double(cx)}, py{y_of_first, y_of_first + 1.0}, pz = Pair{left, left} - py;
+      const Pair dot = Pair{x, x} * px + Pair{y, y} * py + Pair{z, z} * pz;
+      cosine_squared[static_cast<std::size_t>(half)] = dot * dot / (px * px + py * py + pz * pz);
+    }
+    // Which is the best is a toss: no branch.
+    for (std::int32_t j = 0; j < 4; ++j) {
+      const double other = cosine_squared[static_cast<std::size_t>(j / 2)][j % 2];
+      const bool is_better = (other > best_cosine_squared) & (first_y + j <= most_y);
+      best_cosine_squared = is_better ? other : best_cosine_squared;
+      best = is_better ? 4 * i + j : best;
     }
   }
-  return best;
+  const std::int32_t cx = first_x + best / 4, cy = first_y + best % 4;
+  return {cx, cy, m - cx - cy};
 }
 
 std::int32_t with_sign_of(std::int32_t magnitude, double sign) {
