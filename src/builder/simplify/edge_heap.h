@@ -60,10 +60,10 @@ class EdgeHeap {
   }
   [[nodiscard]] std::size_t least_child(std::size_t first) const {
     const std::size_t end = std::min(first + 4, heap_.size());
-    if (end == first + 4) {
-      const std::size_t x = heap_[first + 1] < heap_[first] ? first + 1 : first;
-      const std::size_t y = heap_[first + 3] < heap_[first + 2] ? first + 3 : first + 2;
-      return heap_[y] < heap_[x] ? y : x;
+    if (end == first + 4) {  // which is the least is a toss: sums of comparisons, no branch
+      const std::size_t x = first + (heap_[first + 1] < heap_[first] ? 1U : 0U);
+      const std::size_t y = first + 2 + (heap_[first + 3] < heap_[first + 2] ? 1U : 0U);
+      return x + (y - x) * (heap_[y] < heap_[x] ? 1U : 0U);
     }
     std::size_t least = first;
     for (std::size_t k = first + 1; k < end; ++k) {
