@@ -38,24 +38,51 @@ Overlay::Piece& Overlay::push() {
   return stack_[size_++];
 }
 
-/// Keeps what lies over the piece's triangle; what lies beyond its edges goes onto the stack.
-void Overlay::cut(std::size_t index) {
-  const std::uint32_t k = stack_[index].triangle, entered = stack_[index].entered;
-  const TriangleCorners corners = surface_.corners(k);
+/// Many pieces lie over one triangle, and neighbours come one after the other.
+const Overlay::Below& Overlay::below_of(std::uint32_t k) {
+  if (held_.empty()) held_.resize(kHeld);
+  Below& below = held_[k % kHeld];
+  if (below.triangle == k) return below;
+  below = {};
+  below.triangle = k;
+  below.corners = surface_.corners(k);
+  const Vec3d ab = below.corners[1] - below.corners[0], ac = below.corners[2] - below.corners[0], bc = ac - ab;
+  const Vec3d n = glm::cross(ab, ac);
+  const double longest2 = std::max(glm::dot(ab, ab), std::max(glm::dot(ac, ac), glm::dot(bc, bc)));
+  const double nn = glm::dot(n, n), inverse = 1.0 / nn;
+  constexpr double kSmallestSine2 = 1e-10;  // as TriangleDistance: below, the normal is not trusted
+  if (nn > kSmallestSine2 * longest2 * longest2 && std::isfinite(inverse)) {
+    below.to_b = glm::cross(ac, n) * inverse;
+    below.to_c = glm::cross(n, ab) * inverse;
+    below.up = n * std::sqrt(inverse);
+    below.longest = std::sqrt(longest2);
+  }
   const Vec3d normal(surface_.normal_of(k));
   for (std::uint32_t e = 0; e < 3; ++e) {
     const std::uint32_t next = surface_.neighbor[k][e];
-    if (next == kNoId || e == entered) continue;
+    if (next == kNoId) continue;
     const std::uint32_t other = next / 4;
-    const Vec3d& from = corners[e];
-    const Vec3d edge = corners[(e + 1) % 3] - from;
-    const Vec3d& inner = corners[(e + 2) % 3];
+    const Vec3d& from = below.corners[e];
+    const Vec3d edge = below.corners[(e + 1) % 3] - from;
+    const Vec3d& inner = below.corners[(e + 2) % 3];
     // Halfway between the two triangles: through the edge and along the mean of the normals, whichever way it winds.
     const Vec3d its_inner = surface_.positions[surface_.triangles[other][(next % 4 + 2) % 3]] - from;
     const Vec3d its_normal(surface_.normal_of(other));
     const bool is_turned = glm::dot(its_normal, glm::cross(its_inner, edge)) < 0.0;
     const Vec3d outward = glm::cross(edge, is_turned ? normal - its_normal : normal + its_normal);
-    if (!(glm::dot(outward, inner - from) < 0.0)) continue;  // a needle, or folded back: it stays
+    if (glm::dot(outward, inner - from) < 0.0) below.outward[e] = outward;  // else a needle, or folded back: it stays
+  }
+  return below;
+}
+
+/// Keeps what lies over the piece's triangle; what lies beyond its edges goes onto the stack.
+void Overlay::cut(std::size_t index) {
+  const std::uint32_t k = stack_[index].triangle, entered = stack_[index].entered;
+  const Below& below = below_of(k);
+  for (std::uint32_t e = 0; e < 3; ++e) {
+    const std::uint32_t next = surface_.neighbor[k][e];
+    if (next == kNoId || e == entered) continue;
+    const Vec3d &from = below.corners[e], &outward = below.outward[e];
     Polygon& p = stack_[index].polygon;
     std::array<double, kMostCorners> height;
     bool is_out = false, is_in = false;
@@ -70,7 +97,7 @@ void Overlay::cut(std::size_t index) {
     // Rounding can make a sliver cross more than twice: it stays whole, as does what has no room for corners.
     if (!is_out || crossings > 2 || p.count + 2 > kMostCorners) continue;
     Piece& beyond = push();
-    beyond.triangle = other;
+    beyond.triangle = next / 4;
     beyond.entered = next % 4;
     Polygon& whole = stack_[index].polygon;
     if (!is_in) {
@@ -96,17 +123,34 @@ void Overlay::cut(std::size_t index) {
   }
 }
 
+/// Whether the corners of a piece are near to the triangle below for certain: where weights of its corners are below 0,
+/// the point with these at 0 is no farther than they are in all times the longest edge. No division a corner, and
+/// hardly a branch: nearly all pieces end here.
+bool Overlay::is_surely_near(const Polygon& p, const Below& below) const {
+  double most = 0.0;
+  for (std::uint32_t i = 0; i < p.count; ++i) {
+    const Vec3d pa = p.corner[i] - below.corners[0];
+    const double b = glm::dot(below.to_b, pa), c = glm::dot(below.to_c, pa);
+    const double negative = std::max(0.0, -b) + std::max(0.0, -c) + std::max(0.0, b + c - 1.0);
+    most = std::max(most, std::abs(glm::dot(below.up, pa)) + negative * below.longest);
+  }
+  constexpr double kRounding = 1e-6, kRoundingOfEdge = 1e-8;  // far more than doubles are off by
+  return most <= (1.0 - kRounding) * known_ - kRoundingOfEdge * below.longest;
+}
+
 /// By its corners all of a piece is near to the triangle below, or to what is nearest to one of them; or it is left.
 void Overlay::check(const Piece& piece) {
   const Polygon& p = piece.polygon;
   if (p.count == 0) return;
   below_.push_back(piece.triangle);
+  const Below& triangle = below_of(piece.triangle);
+  if (is_surely_near(p, triangle)) return;
   const auto squared_bound = [&p](const TriangleDistance& distance) {
     double most2 = 0.0;
     for (std::uint32_t i = 0; i < p.count; ++i) most2 = std::max(most2, distance.squared_to(p.corner[i]));
     return most2;
   };
-  const TriangleDistance below(surface_.corners(piece.triangle));
+  const TriangleDistance below(triangle.corners);
   double bound2 = squared_bound(below);
   if (bound2 <= known_ * known_) return;
   for (std::uint32_t i = 0; i < p.count; ++i) {
