@@ -8,6 +8,7 @@
 
 #include "base/local_ids.h"
 #include "base/parallel.h"
+#include "base/release.h"
 #include "base/unset_vector.h"
 #include "builder/cluster/adjacency.h"
 #include "builder/cluster/caps.h"
@@ -42,19 +43,23 @@ std::size_t cut_in_two(std::span<const Vec3i> centers, std::size_t target, const
   const Vec3i extent = high - low;
   const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : (extent.y >= extent.z ? 1 : 2);
   const std::size_t left = ((range.end - range.begin) / 2 + target / 2) / target * target;
+  const auto key_of = [&](std::uint32_t t) {
+    return static_cast<std::uint64_t>(centers[t][axis] - low[axis]) << 32U | t;
+  };
   // Place and triangle as one number each, side by side: through `order` every comparison would go to two of the
   // places.
   UnsetVector<std::uint64_t> keys(range.end - range.begin);
-  std::transform(begin, end, keys.begin(),
-                 [&](std::uint32_t t) { return static_cast<std::uint64_t>(centers[t][axis] - low[axis]) << 32U | t; });
+  std::transform(begin, end, keys.begin(), key_of);
   std::nth_element(keys.begin(), keys.begin() + static_cast<std::ptrdiff_t>(left), keys.end());
-  std::transform(keys.begin(), keys.end(), begin, [](std::uint64_t key) { return static_cast<std::uint32_t>(key); });
+  const std::uint64_t middle = keys[left];
+  release(keys);
+  std::stable_partition(begin, end, [&](std::uint32_t t) { return key_of(t) < middle; });
   return range.begin + left;
 }
 
 /// Splits triangles into chunks at medians. All chunks but those at the far ends hold a multiple of the target, so that
-/// their clusters come out full. `order` is permuted; each chunk's part of it is ascending. Ranges that are as deep as
-/// each other are cut side by side.
+/// their clusters come out full. `order`, ascending, is permuted; each chunk's part of it is ascending. Ranges that are
+/// as deep as each other are cut side by side.
 std::vector<Range> split_into_chunks(std::span<const Vec3i> centers, std::size_t target,
                                      std::span<std::uint32_t> order) {
   std::vector<Range> ranges{{0, order.size()}};
@@ -72,10 +77,6 @@ std::vector<Range> split_into_chunks(std::span<const Vec3i> centers, std::size_t
     }
     ranges = std::move(halves);
   }
-  parallel_for_each_index(ranges.size(), 1, [&](std::size_t i) {
-    std::sort(order.begin() + static_cast<std::ptrdiff_t>(ranges[i].begin),
-              order.begin() + static_cast<std::ptrdiff_t>(ranges[i].end));
-  });
   return ranges;
 }
 

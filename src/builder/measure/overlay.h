@@ -123,8 +123,8 @@ class Overlay {
     std::uint32_t entered;  ///< over that edge; 3: over none
   };
 
-  static constexpr std::size_t kHeld =
-      64;  ///< 14 kB; with 256 a build takes 0.1% fewer instructions, and more of a cache
+  /// Triangles, in 14 kB: with 256 a build of the bunny takes 0.1% fewer instructions, and more of a cache.
+  static constexpr std::size_t kHeld = 64;
   /// A triangle of the surface as pieces over it see it.
   struct Below {
     std::uint32_t triangle = kNoId;
