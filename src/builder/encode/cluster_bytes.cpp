@@ -234,6 +234,7 @@ class ClusterEncoder {
       best_chart = chart;
       normal_range_ = range;
     }
+    normals_.reserve(points.size());
     for (const auto& point : points) normals_.push_back(chart_coordinates(point, best_chart, plan_.normal_scale));
     put(format::head::kChart, static_cast<std::int32_t>(best_chart));
     put(format::head::kNormalMinimumA, normal_range_[0].minimum);
