@@ -20,8 +20,7 @@ namespace {
 /// by first use again where the triangles come in another order.
 void write_cluster(const BuildPool& pool, const BuildCluster& source, const DagCluster& cluster, LodDag& dag,
                    std::vector<std::uint32_t>& wedge_of_vertex) {
-  std::array<std::uint32_t, 256> order;
-  const std::span<std::uint32_t> triangles = std::span(order).first(source.triangle_count);
+  std::vector<std::uint32_t> triangles(source.triangle_count);
   std::iota(triangles.begin(), triangles.end(), source.first_triangle);
   const auto before = [&](std::uint32_t a, std::uint32_t b) {
     return material_of(pool.triangle_material[a]) < material_of(pool.triangle_material[b]);
@@ -29,7 +28,7 @@ void write_cluster(const BuildPool& pool, const BuildCluster& source, const DagC
   if (!std::is_sorted(triangles.begin(), triangles.end(), before)) {
     std::stable_sort(triangles.begin(), triangles.end(), before);
   }
-  std::array<std::uint32_t, 256> number;  // by vertex as it was; kNoId: not met yet
+  std::array<std::uint32_t, 256> number;  // by vertex as it was, a byte; kNoId: not met yet
   number.fill(kNoId);
   const std::span<const std::uint32_t> vertices = pool.vertices_of(source);
   std::uint32_t count = 0;
