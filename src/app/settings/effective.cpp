@@ -124,7 +124,7 @@ Result<EffectiveSettings> read_effective(const Json& json) {
       return broken("/mesh_rules", "no rule");
     }
     TRY_LET(words, read_words(rule.find("values"), "/mesh_rules/values"));
-    settings.mesh_rules.push_back({*place->string(), *meshes->string(), std::move(*words)});
+    settings.mesh_rules.push_back({std::string(*place->string()), std::string(*meshes->string()), std::move(*words)});
   }
   return settings;
 }

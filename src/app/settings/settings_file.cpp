@@ -143,13 +143,13 @@ std::optional<std::string> word_of_value(Setting setting, const Json& value) {
     if (!value.is_bool()) return std::nullopt;
     return std::get<bool>(value.value) ? "true" : "false";
   }
-  if (value.is_string()) return *value.string();
+  if (value.is_string()) return std::string(*value.string());
   if (is_list(setting)) {
     if (!value.is_array()) return std::nullopt;
     std::string words;
     for (const Json& name : *value.array()) {
       if (!name.is_string()) return std::nullopt;
-      words += (words.empty() ? "" : ",") + *name.string();
+      words += (words.empty() ? "" : ",") + std::string(*name.string());
     }
     return words;
   }

@@ -133,7 +133,7 @@ class FeatureList {
   void add_extensions(const scene::Json& document) {
     for (const scene::Json& name : document.items("extensionsUsed")) {
       if (!name.is_string()) continue;
-      add("extension " + name.string()->substr(0, 64), true,
+      add("extension " + std::string(name.string()->substr(0, 64)), true,
           *name.string() == "KHR_texture_transform" ? "acted on, and carried through"
                                                     : "carried through with the document");
     }

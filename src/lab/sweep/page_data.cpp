@@ -24,7 +24,7 @@ std::vector<std::string> ids_of(const SweepResult& result, const std::vector<std
 std::string error_tier_of(const AssetFacts& asset) {
   const auto settings = scene::parse_json(asset.settings);
   const scene::Json* const tier = settings && settings->is_object() ? settings->find("error_tier") : nullptr;
-  return tier != nullptr && tier->is_string() ? *tier->string() : std::string();
+  return tier != nullptr && tier->is_string() ? std::string(*tier->string()) : std::string();
 }
 
 page::Figure page_figure(const Metric& metric, const Figure& figure) {

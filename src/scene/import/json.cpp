@@ -26,18 +26,49 @@ bool has_duplicate_keys(const Json::Object& object) {
   return std::adjacent_find(keys.begin(), keys.end()) != keys.end();
 }
 
+/// How many values each array and object of a JSON text has, in the order in which they open, so that each takes its
+/// memory once: one that doubles would hold up to three times its values while it grows. Of a text that is none the
+/// counts are only hints, and end where it is nested too deep.
+std::vector<std::uint32_t> count_items(std::string_view text) {
+  std::vector<std::uint32_t> counts;
+  counts.reserve(static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) {
+    return c == '[' || c == '{';  // in strings too
+  })));
+  std::vector<std::size_t> open;
+  bool is_first = false;  // what comes next is the first thing in the innermost one
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (c == ' ' || c == '\n' || c == '\r' || c == '\t') continue;
+    const bool is_end = c == ']' || c == '}';
+    if (!open.empty() && (c == ',' || (is_first && !is_end))) ++counts[open.back()];
+    is_first = c == '[' || c == '{';
+    if (is_first) {
+      if (open.size() == kMaxJsonDepth) break;
+      open.push_back(counts.size());
+      counts.push_back(0);
+    } else if (is_end && !open.empty()) {
+      open.pop_back();
+    } else if (c == '"') {
+      for (++i; i < text.size() && text[i] != '"'; ++i) i += text[i] == '\\' ? 1 : 0;
+    }
+  }
+  return counts;
+}
+
 /// Receives the parser's events and builds the tree.
 class TreeBuilder : public nlohmann::json_sax<nlohmann::json> {
  public:
+  explicit TreeBuilder(std::string_view text) : counts_(count_items(text)) {}
+
   bool null() override { return put(Json{}) != nullptr; }
   bool boolean(bool flag) override { return put(Json{flag}) != nullptr; }
   bool number_integer(number_integer_t n) override { return put(Json{std::int64_t{n}}) != nullptr; }
   bool number_unsigned(number_unsigned_t n) override { return put(Json{std::uint64_t{n}}) != nullptr; }
   bool number_float(number_float_t n, const string_t&) override { return put(Json{n}) != nullptr; }
-  bool string(string_t& text) override { return put(Json{std::move(text)}) != nullptr; }
+  bool string(string_t& text) override { return put(Json::make_string(text)) != nullptr; }
   bool binary(binary_t&) override { return false; }
-  bool start_object(std::size_t) override { return open(Json::make_object()); }
-  bool start_array(std::size_t) override { return open(Json::make_array()); }
+  bool start_object(std::size_t) override { return open(Json::Object{}); }
+  bool start_array(std::size_t) override { return open(Json::Array{}); }
   bool key(string_t& name) override {
     key_ = std::move(name);
     return true;
@@ -76,31 +107,31 @@ class TreeBuilder : public nlohmann::json_sax<nlohmann::json> {
       root = std::move(value);
       return &root;
     }
-    if (auto* array = std::get_if<Json::Array>(&open_.back()->value)) {
-      array->push_back(std::move(value));
-      return &array->back();
-    }
+    if (auto* array = std::get_if<Json::Array>(&open_.back()->value)) return &array->push_back(std::move(value));
     auto& object = std::get<Json::Object>(open_.back()->value);
-    object.push_back({std::exchange(key_, {}), std::move(value)});
-    return &object.back().value;
+    return &object.push_back({std::exchange(key_, {}), std::move(value)}).value;
   }
-  bool open(Json value) {
+  template <class List>
+  bool open(List list) {
     if (open_.size() >= kMaxJsonDepth) {
       problem = "values nested deeper than " + std::to_string(kMaxJsonDepth);
       return false;
     }
+    if (opened_ < counts_.size()) list.reserve(counts_[opened_++]);
     // A container's address is stable while it is open: only the innermost one grows.
-    open_.push_back(put(std::move(value)));
+    open_.push_back(put(Json{std::move(list)}));
     return true;
   }
 
+  std::vector<std::uint32_t> counts_;
+  std::size_t opened_ = 0;  ///< containers so far: the place in counts_
   std::vector<Json*> open_;
   std::string key_;
 };
 
 /// As nlohmann-json writes it. Of text beyond ASCII it checks the UTF-8; a tree of its own is never made, for it cannot
 /// be destroyed where memory is short.
-void append_string(const std::string& text, std::string& out) {
+void append_string(std::string_view text, std::string& out) {
   const bool is_plain = std::none_of(text.begin(), text.end(), [](char c) {
     const auto byte = static_cast<unsigned char>(c);
     return byte < 0x20 || byte >= 0x80 || c == '"' || c == '\\';
@@ -147,7 +178,7 @@ void append_json(const Json& json, std::string& out) {
       append_json(member.value, out);
     }
     out += '}';
-  } else if (const auto* text = json.string()) {
+  } else if (const auto text = json.string()) {
     append_string(*text, out);
   } else if (const auto* flag = std::get_if<bool>(&json.value)) {
     out += *flag ? "true" : "false";
@@ -217,14 +248,13 @@ void Json::set(std::string_view key, Json member) {
 
 void Json::erase(std::string_view key) {
   if (auto* members = std::get_if<Object>(&value)) {
-    members->erase(std::remove_if(members->begin(), members->end(), [&](const JsonMember& m) { return m.key == key; }),
-                   members->end());
+    members->erase_if([&](const JsonMember& m) { return m.key == key; });
   }
 }
 
 void Json::erase_all(const std::vector<std::string>& keys) {
   if (auto* members = std::get_if<Object>(&value)) {
-    std::erase_if(*members, [&](const JsonMember& m) { return std::binary_search(keys.begin(), keys.end(), m.key); });
+    members->erase_if([&](const JsonMember& m) { return std::binary_search(keys.begin(), keys.end(), m.key); });
   }
 }
 
@@ -237,8 +267,8 @@ Json Json::make_array() {
 Json Json::make_index(std::uint64_t index) {
   return Json{index};
 }
-Json Json::make_string(std::string text) {
-  return Json{std::move(text)};
+Json Json::make_string(std::string_view text) {
+  return Json{Text(text.data(), text.size())};
 }
 Json Json::make_number(double number) {
   return Json{number};
@@ -248,7 +278,7 @@ Json Json::make_bool(bool flag) {
 }
 
 Result<Json> parse_json(std::string_view text) {
-  TreeBuilder builder;
+  TreeBuilder builder(text);
   try {
     if (nlohmann::json::sax_parse(text.begin(), text.end(), &builder)) return std::move(builder.root);
   } catch (const nlohmann::json::exception& error) {

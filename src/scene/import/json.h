@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A JSON document as a tree of plain values, read from hostile text. nlohmann-json stays behind json.cpp.
+// A JSON document as a tree of plain values, read from hostile text. nlohmann-json stays behind json.cpp. A value takes
+// 16 bytes, and what it holds one block of memory: a tree takes at most 12 bytes per byte of text, and 16 where values
+// are nested in one another and hold nothing else (tests/scene/import/out_of_memory_test.cpp).
 #pragma once
 
 #include <cstdint>
@@ -10,6 +12,8 @@
 #include <vector>
 
 #include <meshlode/result.h>
+
+#include "scene/import/json_list.h"
 
 namespace meshlode::scene {
 
@@ -26,18 +30,22 @@ struct JsonNull {
 
 /// One JSON value. Objects keep the order of their members, so that what is carried through comes out as it went in.
 struct Json {
-  using Array = std::vector<Json>;
-  using Object = std::vector<JsonMember>;
-  std::variant<JsonNull, bool, std::int64_t, std::uint64_t, double, std::string, Array, Object> value;
+  using Text = JsonList<char>;
+  using Array = JsonList<Json>;
+  using Object = JsonList<JsonMember>;
+  std::variant<JsonNull, bool, std::int64_t, std::uint64_t, double, Text, Array, Object> value;
 
   [[nodiscard]] bool is_object() const { return std::holds_alternative<Object>(value); }
   [[nodiscard]] bool is_array() const { return std::holds_alternative<Array>(value); }
-  [[nodiscard]] bool is_string() const { return std::holds_alternative<std::string>(value); }
+  [[nodiscard]] bool is_string() const { return std::holds_alternative<Text>(value); }
   [[nodiscard]] bool is_bool() const { return std::holds_alternative<bool>(value); }
   [[nodiscard]] bool is_number() const;
   [[nodiscard]] const Array* array() const { return std::get_if<Array>(&value); }
   [[nodiscard]] const Object* object() const { return std::get_if<Object>(&value); }
-  [[nodiscard]] const std::string* string() const { return std::get_if<std::string>(&value); }
+  [[nodiscard]] std::optional<std::string_view> string() const {
+    const auto* text = std::get_if<Text>(&value);
+    return text != nullptr ? std::optional(std::string_view(text->data(), text->size())) : std::nullopt;
+  }
 
   /// The member of an object, or nullptr where there is none or this is no object.
   [[nodiscard]] const Json* find(std::string_view key) const;
@@ -59,7 +67,7 @@ struct Json {
   [[nodiscard]] static Json make_object();
   [[nodiscard]] static Json make_array();
   [[nodiscard]] static Json make_index(std::uint64_t index);
-  [[nodiscard]] static Json make_string(std::string text);
+  [[nodiscard]] static Json make_string(std::string_view text);
   [[nodiscard]] static Json make_number(double number);
   [[nodiscard]] static Json make_bool(bool flag);
 };
@@ -68,6 +76,7 @@ struct JsonMember {
   std::string key;
   Json value;
 };
+static_assert(sizeof(Json) == 16);
 
 /// Parses UTF-8 JSON of at most kMaxJsonDepth nested values. Duplicate keys are refused: readers disagree on them.
 /// Errors: kInvalid with the byte at which the text went wrong; `where` is left to the caller.

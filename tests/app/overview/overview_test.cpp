@@ -86,7 +86,7 @@ TEST(BatchPage, NoNameIsMarkup) {
   ASSERT_EQ(assets.size(), 2 * kHostile.size());
   for (std::size_t i = 0; i + 1 < kHostile.size(); ++i) {  // the last is not UTF-8
     EXPECT_EQ(*assets[2 * i].find("input")->string(), "in/" + kHostile[i]);
-    const std::string& link = *assets[2 * i + 1].find("link")->string();
+    const std::string_view link = *assets[2 * i + 1].find("link")->string();
     EXPECT_TRUE(link.starts_with("./out/")) << link;
     EXPECT_EQ(link.find_first_of(":<\"' \n"), std::string::npos) << link;
   }
@@ -157,7 +157,7 @@ TEST(Sarif, ListsFailuresAndFindingsWithPlacesThatAreNoSchemes) {
     ASSERT_LT(index, rules.size());
     EXPECT_EQ(*rules[index].find("id")->string(), *result.find("ruleId")->string());
     EXPECT_FALSE(result.find("message")->find("text")->string()->empty());
-    const std::string& uri =
+    const std::string_view uri =
         *result.items("locations")[0].find("physicalLocation")->find("artifactLocation")->find("uri")->string();
     EXPECT_EQ(uri.find_first_of(":<> \n|"), std::string::npos) << uri;
   }

@@ -32,7 +32,7 @@ class Reader {
   std::optional<std::string> maybe_text(const Json& from, std::string_view key) {
     const Json* const found = member(from, key);
     if (found == nullptr) return std::nullopt;
-    if (found->is_string()) return *found->string();
+    if (found->is_string()) return std::string(*found->string());
     refuse(key, "no text");
     return std::nullopt;
   }
@@ -70,7 +70,7 @@ class Reader {
     std::vector<std::string> out;
     for (const Json& item : list(from, key)) {
       if (item.is_string()) {
-        out.push_back(*item.string());
+        out.emplace_back(*item.string());
       } else {
         refuse(key, "no list of texts");
       }

@@ -2,15 +2,18 @@
 // Memory that cannot be had while a file is read is no fault of the file: each large allocation of an import fails
 // once. Small ones are let through, as a machine that runs out of memory does: nlohmann-json's destructors allocate,
 // and end the program where they cannot. This program's operator new stands in for the library's, in shared libraries
-// too.
+// too. It also counts the memory of a document's values.
 #include <gtest/gtest.h>
+#include <malloc.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <new>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "draco_samples.h"
@@ -24,10 +27,22 @@ namespace {
 constexpr long kNever = -1;
 thread_local long allocations_left = kNever;  ///< of this thread and the size below or more, until one fails
 thread_local std::size_t smallest = 0;
+thread_local long held = 0, most_held = 0;  ///< bytes, with what malloc puts before each block
+
+long bytes_of(void* memory) {
+  return static_cast<long>(malloc_usable_size(memory) + sizeof(std::size_t));
+}
 
 void* allocate(std::size_t bytes) {
   if (bytes >= smallest && allocations_left >= 0 && allocations_left-- == 0) return nullptr;
-  return std::malloc(bytes == 0 ? 1 : bytes);
+  void* const memory = std::malloc(bytes == 0 ? 1 : bytes);
+  if (memory != nullptr) most_held = std::max(most_held, held += bytes_of(memory));
+  return memory;
+}
+
+void release(void* memory) {
+  if (memory != nullptr) held -= bytes_of(memory);
+  std::free(memory);
 }
 
 void* allocate_or_throw(std::size_t bytes) {
@@ -51,22 +66,22 @@ void* operator new[](std::size_t bytes, const std::nothrow_t&) noexcept {
   return allocate(bytes);
 }
 void operator delete(void* memory) noexcept {
-  std::free(memory);
+  release(memory);
 }
 void operator delete[](void* memory) noexcept {
-  std::free(memory);
+  release(memory);
 }
 void operator delete(void* memory, std::size_t) noexcept {
-  std::free(memory);
+  release(memory);
 }
 void operator delete[](void* memory, std::size_t) noexcept {
-  std::free(memory);
+  release(memory);
 }
 void operator delete(void* memory, const std::nothrow_t&) noexcept {
-  std::free(memory);
+  release(memory);
 }
 void operator delete[](void* memory, const std::nothrow_t&) noexcept {
-  std::free(memory);
+  release(memory);
 }
 
 namespace meshlode::testing {
@@ -163,6 +178,45 @@ TEST(OutOfMemory, IsNotTheFilesFault) {
     EXPECT_GE(failures, 2) << file.name;
   }
   std::filesystem::remove_all(folder);
+}
+
+/// A .gltf of a triangle and `bytes` of the same value, again and again, in its extras.
+std::string gltf_of_many(const std::string& value, std::size_t bytes) {
+  std::string text = R"({"asset":{"version":"2.0"},"buffers":[{"byteLength":36,"uri":"data:;base64,AAAAAAAAAAAAAAAA)"
+                     R"(AACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}],"bufferViews":[{"buffer":0,"byteLength":36}],)"
+                     R"("accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"}],)"
+                     R"("meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"nodes":[{"mesh":0}],)"
+                     R"("scenes":[{"nodes":[0]}],"scene":0,"extras":[)";
+  while (text.size() < bytes) text += value + ",";
+  return text + "0]}";
+}
+
+/// The most memory that `body` takes at once, the file's text as it is mapped included, per byte of the text.
+template <class Body>
+double bytes_per_byte(const std::string& text, const Body& body) {
+  held = most_held = 0;
+  body();
+  return static_cast<double>(most_held) / static_cast<double>(text.size()) + 1.0;
+}
+
+TEST(Memory, OfADocumentIsAtMost16BytesPerByteOfText) {
+  const auto path = std::filesystem::temp_directory_path() / ("meshlode-many-" + std::to_string(::getpid()) + ".gltf");
+  const std::string nested = std::string(100, '[') + std::string(100, ']');
+  // Values that are nested and hold nothing else take 16 bytes per byte for the tree, and their counts or text besides.
+  for (const auto& [value, most_parsed, most_imported] :
+       std::vector<std::tuple<std::string, double, double>>{{"0", 9.5, 16.0},
+                                                            {"{}", 9.5, 16.0},
+                                                            {"\"a\"", 13.1, 16.0},
+                                                            {"[0]", 14.1, 16.0},
+                                                            {"{\"a\":0}", 13.1, 16.0},
+                                                            {"{\"a\":\"b\"}", 13.6, 16.0},
+                                                            {nested, 20.0, 20.0}}) {
+    const std::string text = gltf_of_many(value, 2'000'000);
+    EXPECT_LE(bytes_per_byte(text, [&] { EXPECT_TRUE(scene::parse_json(text)); }), most_parsed) << value;
+    std::ofstream(path, std::ios::binary).write(text.data(), static_cast<std::streamsize>(text.size()));
+    EXPECT_LE(bytes_per_byte(text, [&] { EXPECT_TRUE(scene::import_scene(path, {})); }), most_imported) << value;
+  }
+  std::filesystem::remove(path);
 }
 
 TEST(OutOfMemory, ACopyOfADocumentIsUndone) {

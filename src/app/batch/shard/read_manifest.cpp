@@ -45,7 +45,7 @@ class Members {
   }
   std::string text(const Json& from, std::string_view key) {
     const Json* member = from.find(key);
-    if (member != nullptr && member->is_string()) return *member->string();
+    if (member != nullptr && member->is_string()) return std::string(*member->string());
     refuse(key, "no text");
     return {};
   }
@@ -178,13 +178,12 @@ std::string read_settings(Members& in, const Json& root) {
     return text;
   }
   for (const scene::JsonMember& member : *settings->object()) {
-    const std::string* value = member.value.string();
-    if (value == nullptr || member.key.find_first_of(" \n") != std::string::npos ||
-        value->find('\n') != std::string::npos) {
+    const auto value = member.value.string();
+    if (!value || member.key.find_first_of(" \n") != std::string::npos || value->find('\n') != std::string::npos) {
       in.refuse("settings", "no setting of one line");
       return text;
     }
-    text += member.key + " " + *value + "\n";
+    text.append(member.key).append(" ").append(*value).append("\n");
   }
   return text;
 }

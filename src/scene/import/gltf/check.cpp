@@ -219,8 +219,8 @@ Status check_gltf_extensions(const Json& root, const std::string& file) {
     }
     for (std::size_t i = 0; i < list->array()->size(); ++i) {
       const std::string path = "/" + std::string(key) + "/" + std::to_string(i);
-      const std::string* name = (*list->array())[i].string();
-      if (name == nullptr) {
+      const auto name = (*list->array())[i].string();
+      if (!name) {
         checker.fail(path, "not a string");
       } else if (key == "extensionsRequired" && !is_known_extension(*name)) {
         checker.fail(path, "the required extension " + pointer_part(*name) + " is not supported",

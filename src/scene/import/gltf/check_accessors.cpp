@@ -107,7 +107,7 @@ class AccessorChecker : public JsonChecker {
     const Json* type = accessor.find("type");
     const TypeShape* shape = nullptr;
     for (const TypeShape& candidate : kShapes) {
-      if (type != nullptr && type->string() != nullptr && *type->string() == candidate.name) shape = &candidate;
+      if (type != nullptr && type->string() == candidate.name) shape = &candidate;
     }
     if (shape == nullptr) return fail(path + "/type", "not one of glTF's types");
     const std::uint64_t count = index_or(accessor, "count", 0);

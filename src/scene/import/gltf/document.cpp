@@ -47,19 +47,19 @@ void drop_binary_extensions(Json& object, const std::string& what, std::vector<L
 }
 
 std::string image_name(const Json& image) {
-  if (const Json* name = image.find("name")) return *name->string();
+  if (const Json* name = image.find("name")) return std::string(*name->string());
   const Json* uri = image.find("uri");
   if (uri == nullptr || is_data_uri(*uri->string())) return "";
-  const std::string& path = *uri->string();
-  return path.substr(path.find_last_of("/\\") + 1);  // npos + 1 == 0
+  const std::string_view path = *uri->string();
+  return std::string(path.substr(path.find_last_of("/\\") + 1));  // npos + 1 == 0
 }
 
 /// A URI in a message: no control characters, and not all of a long one.
-std::string shown_uri(const std::string& uri) {
+std::string shown_uri(std::string_view uri) {
   constexpr std::size_t kMost = 200;
   std::size_t size = std::min(uri.size(), kMost);
   while (size > 0 && size < uri.size() && (static_cast<unsigned char>(uri[size]) & 0xC0U) == 0x80U) --size;
-  return uri.empty() ? uri : printable(std::string_view(uri).substr(0, size), kMost);
+  return uri.empty() ? std::string() : printable(uri.substr(0, size), kMost);
 }
 
 /// The bytes of an image where it names any, and else why it has none.
@@ -188,22 +188,23 @@ void carry_nodes(const GltfAsset& asset, Json& document, Scene& scene) {
 
 }  // namespace
 
-Status carry_document(const GltfAsset& asset, GltfFiles& files, const ImportOptions& options, DecodeBudget& budget,
+Status carry_document(GltfAsset& asset, GltfFiles& files, const ImportOptions& options, DecodeBudget& budget,
                       Scene& scene) {
   Json document = Json::make_object();
-  const auto copy = [&](std::string_view key) {
-    if (const Json* member = asset.root.find(key)) document.set(key, *member);
+  // Moved, not copied: an asset's own data may be most of its text. Nothing looks at these after this.
+  const auto take = [&](std::string_view key) {
+    if (Json* member = asset.root.find(key)) document.set(key, std::move(*member));
   };
-  copy("asset");
+  take("asset");
   carry_extension_names(asset.root, document);
-  copy("scene");
-  copy("scenes");
+  take("scene");
+  take("scenes");
   carry_nodes(asset, document, scene);
-  for (const std::string_view key : {"materials", "textures", "samplers", "cameras"}) copy(key);
+  for (const std::string_view key : {"materials", "textures", "samplers", "cameras"}) take(key);
   if (auto status = carry_images(asset, files, options, document, scene); !status) return status;
   if (auto status = carry_animations(asset, budget, document, scene); !status) return status;
-  copy("extensions");
-  copy("extras");
+  take("extensions");
+  take("extras");
   drop_binary_extensions(document, "root", scene.left_out);
   scene.document = dump_json(document);
   return Ok{};

@@ -5,7 +5,7 @@
 
 namespace meshlode::scene {
 
-Result<std::span<const std::uint8_t>> GltfFiles::open(const std::string& uri) {
+Result<std::span<const std::uint8_t>> GltfFiles::open(std::string_view uri) {
   if (is_data_uri(uri)) {
     TRY_LET(data, decode_data_uri(uri));
     decoded_.push_back(std::move(data->bytes));

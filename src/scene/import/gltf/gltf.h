@@ -46,7 +46,7 @@ class GltfFiles {
                      std::vector<std::filesystem::path> allow_outside)
       : folder_(std::move(folder)), files_read_(files_read), allow_outside_(std::move(allow_outside)) {}
   /// The bytes of a URI; they live as long as this object.
-  [[nodiscard]] Result<std::span<const std::uint8_t>> open(const std::string& uri);
+  [[nodiscard]] Result<std::span<const std::uint8_t>> open(std::string_view uri);
   void hash(std::span<const std::uint8_t> bytes) { hasher_.update(bytes); }
   [[nodiscard]] std::string hash_hex() const { return to_hex(hasher_.digest()); }
   [[nodiscard]] std::uint64_t total_bytes() const { return total_bytes_; }

@@ -220,7 +220,7 @@ Status read_meshes(const GltfAsset& asset, const ImportOptions& options, DecodeB
 }
 
 /// Where import finds the file of a URI, or would find it were it there. Errors: as resolve_uri, but never kIo.
-Result<std::vector<std::filesystem::path>> places_of_uri(const std::filesystem::path& folder, const std::string& uri,
+Result<std::vector<std::filesystem::path>> places_of_uri(const std::filesystem::path& folder, std::string_view uri,
                                                          std::span<const std::filesystem::path> allow_outside) {
   std::vector<std::filesystem::path> missing;
   for (const std::string& name : paths_of_uri(uri)) {
@@ -246,7 +246,7 @@ Result<std::span<const std::uint8_t>> GltfAsset::view_bytes(std::size_t view, co
   const Json* extensions = root.items("bufferViews")[view].find("extensions");
   if (extensions != nullptr && extensions->object() != nullptr && !extensions->object()->empty()) {
     return error(ErrorCode::kUnsupported, json_path,
-                 "its buffer has no data: the bytes lie in " + pointer_part(extensions->object()->front().key) +
+                 "its buffer has no data: the bytes lie in " + pointer_part((*extensions->object())[0].key) +
                      ", an extension that is not read, though optional here");
   }
   return invalid(json_path, "its buffer has no data");
@@ -310,7 +310,7 @@ Result<std::vector<FileReference>> list_gltf_references(const std::filesystem::p
     const Json::Array& items = root->items(key);
     for (std::size_t i = 0; i < items.size(); ++i) {
       const Json* uri = items[i].find("uri");
-      if (uri == nullptr || uri->string() == nullptr || is_data_uri(*uri->string())) continue;
+      if (uri == nullptr || !uri->is_string() || is_data_uri(*uri->string())) continue;
       if (kind == Kind::kBuffer && is_meshopt_fallback(items[i])) continue;
       const auto places = places_of_uri(path.parent_path(), *uri->string(), allow_outside);
       if (!places && kind == Kind::kBuffer) {
@@ -318,11 +318,11 @@ Result<std::vector<FileReference>> list_gltf_references(const std::filesystem::p
         return Error{places.error().code, place, places.error().detail};
       }
       if (!places) {
-        references.push_back({kind, *uri->string(), {}});
+        references.push_back({kind, std::string(*uri->string()), {}});
         continue;
       }
       for (const std::filesystem::path& where : *places) {
-        if (known.insert(where).second) references.push_back({kind, *uri->string(), where});
+        if (known.insert(where).second) references.push_back({kind, std::string(*uri->string()), where});
       }
     }
   }

@@ -43,7 +43,7 @@ struct Json;
 
 /// Fills scene.document and scene.blobs with all that travels unchanged, and the blobs of the materials' texture uses.
 /// Opens the images.
-[[nodiscard]] Status carry_document(const GltfAsset& asset, GltfFiles& files, const ImportOptions& options,
+[[nodiscard]] Status carry_document(GltfAsset& asset, GltfFiles& files, const ImportOptions& options,
                                     DecodeBudget& budget, Scene& scene);
 
 /// The rigid animations of the document: fills `document`'s animations, accessors, bufferViews and buffers, and one

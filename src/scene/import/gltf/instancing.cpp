@@ -81,7 +81,7 @@ class InstanceExpander {
 
   /// All attributes have as many elements, or are refused later.
   [[nodiscard]] std::uint64_t count_of(const Json& attributes) const {
-    return asset_.model.accessors[attributes.object()->front().value.index().value_or(0)].count;
+    return asset_.model.accessors[(*attributes.object())[0].value.index().value_or(0)].count;
   }
 
   [[nodiscard]] std::string stem_of(std::size_t n) const {

@@ -47,7 +47,7 @@ Extension find_extension(const Json& object) {
 
 std::string_view text_or(const Json& object, std::string_view key, std::string_view fallback) {
   const Json* member = object.find(key);
-  return member != nullptr && member->string() != nullptr ? std::string_view(*member->string()) : fallback;
+  return member != nullptr ? member->string().value_or(fallback) : fallback;
 }
 
 /// \pre checked
