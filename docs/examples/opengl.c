@@ -223,7 +223,7 @@ static void save_picture(const char* path, double* covered) {
 }
 
 int main(int argc, char** argv) {
-  meshlode_view view = {{0.0, 0.0, 0.0}, 0, FOVY, 0.0, NEAR, HEIGHT};
+  meshlode_view view = {{0.0, 0.0, 0.0}, 0, FOVY, 0.0, NEAR, HEIGHT, MESHLODE_PROMISE_POSITION};
   double target[3], axes[3][3], covered;
   meshlode_draw_item* items;
   gpu_item* uploaded;

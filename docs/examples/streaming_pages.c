@@ -151,7 +151,7 @@ int main(int argc, char** argv) {
     /* 2. Select of what is there, from a path around the first mesh that comes closer. */
     const double a = 3.14159 * frame / frames, r = mesh->diagonal * (0.6 + 4.0 * (frames - 1 - frame) / frames);
     const double axes[3][3] = {{cos(a), 0, -sin(a)}, {0, 1, 0}, {-sin(a), 0, -cos(a)}}; /* right, up, forward */
-    meshlode_view view = {{0.0, 0.0, 0.0}, 0, FOVY, 0.0, 1e-3, HEIGHT};
+    meshlode_view view = {{0.0, 0.0, 0.0}, 0, FOVY, 0.0, 1e-3, HEIGHT, MESHLODE_PROMISE_POSITION};
     meshlode_frustum frustum;
     double at[3];
     for (i = 0; i < 3; ++i) {

@@ -133,7 +133,7 @@ static void check_cut(const meshlode_view* view, double pixel_error, size_t coun
 }
 
 int main(int argc, char** argv) {
-  meshlode_view view = {{0.0, 0.0, 0.0}, 0, FOVY, 0.0, NEAR, HEIGHT};
+  meshlode_view view = {{0.0, 0.0, 0.0}, 0, FOVY, 0.0, NEAR, HEIGHT, MESHLODE_PROMISE_POSITION};
   double target[3], axes[3][3], pixel_error, covered;
   size_t i, count, triangles = 0;
   if (argc != 10) stop("usage", "vulkan ASSET PICTURE.png PIXEL_ERROR EYE_X EYE_Y EYE_Z TARGET_X TARGET_Y TARGET_Z");

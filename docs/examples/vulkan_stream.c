@@ -142,7 +142,7 @@ static void check_cut(const meshlode_view* view, const double target[3], const d
 }
 
 int main(int argc, char** argv) {
-  meshlode_view view = {{0.0, 0.0, 0.0}, 0, FOVY, 0.0, NEAR, HEIGHT};
+  meshlode_view view = {{0.0, 0.0, 0.0}, 0, FOVY, 0.0, NEAR, HEIGHT, MESHLODE_PROMISE_POSITION};
   double eye[3], target[3], axes[3][3], pixel_error, covered;
   size_t i, count = 0, missing = 0, triangles = 0;
   uint32_t frame, slots;

@@ -203,7 +203,7 @@ struct BuildOptions {
   /// Comma-separated; '*' stands for any characters, '?' for one.
   std::string aggregate_names;
   /// Which errors the asset stores besides those of positions (docs/reference/selection.md): kTexels adds texture
-  /// coordinates, kAppearance also normals. A renderer picks one with AssetFile::choose_promise. Works with every error
+  /// coordinates, kAppearance also normals. A renderer selects by one with View::promise. Works with every error
   /// tier: bounds with kCertified, measured with kMeasured and kQem.
   format::Promise promise = format::Promise::kPosition;
   /// Limit for the process, bytes; 0: what the machine has left. Fewer meshes are built at once to stay below it; if

@@ -27,7 +27,7 @@
  * caller.
  *
  * Thread safety. Any number of threads may use an asset at once, each with a selector of its own, except while one
- * calls meshlode_choose_promise or meshlode_close.
+ * calls meshlode_close.
  *
  * Not promised: a stable ABI before version 1 (docs/reference/compatibility.md); caching (a page loaded twice is
  * unpacked twice).
@@ -327,16 +327,23 @@ MESHLODE_API const char* meshlode_scene_json(const meshlode_asset* asset, size_t
 
 /** What errors cover: a cut at t pixels is within t pixels of the source in these (docs/reference/selection.md). */
 typedef enum meshlode_promise {
-  MESHLODE_PROMISE_POSITION = 0,  /**< positions; every asset has it, and it is chosen when one is opened */
+  MESHLODE_PROMISE_POSITION = 0,  /**< positions; every asset has it */
   MESHLODE_PROMISE_TEXELS = 1,    /**< texture coordinates too */
   MESHLODE_PROMISE_APPEARANCE = 2 /**< and shading normals */
 } meshlode_promise;
 
-/** Chooses by which errors cuts are made. From now on level0_deviation of the meshes and error of the groups and nodes
- * are those of the promise, in the tables too: upload them again if you select on a GPU. Tables returned before stay
- * valid until the next choice. Not while another thread uses the asset. Errors: MESHLODE_USAGE for an unknown value;
- * MESHLODE_UNSUPPORTED if the asset was not built with it. */
-MESHLODE_API meshlode_status meshlode_choose_promise(meshlode_asset* asset, uint32_t promise, meshlode_error* error);
+/** The tables that hold errors: as meshlode_meshes, meshlode_groups and meshlode_nodes, which have the errors of
+ * positions, but level0_deviation of the meshes and error of the groups and nodes are those of a promise. */
+typedef struct meshlode_promise_tables {
+  const meshlode_mesh* meshes;  /**< as many as meshlode_meshes */
+  const meshlode_group* groups; /**< as many as meshlode_groups */
+  const meshlode_node* nodes;   /**< as many as meshlode_nodes */
+} meshlode_promise_tables;
+
+/** What to upload to select by a promise on a GPU. Errors: MESHLODE_USAGE for an unknown value; MESHLODE_UNSUPPORTED if
+ * the asset was not built with it. */
+MESHLODE_API meshlode_status meshlode_tables_of(const meshlode_asset* asset, uint32_t promise,
+                                                meshlode_promise_tables* tables, meshlode_error* error);
 
 /* ----------------------------------------------------------------------------------------------------- selecting */
 
@@ -349,6 +356,7 @@ typedef struct meshlode_view {
   double ortho_height;  /**< world units across the height of the picture, above 0; orthographic only */
   double near_distance; /**< world units, above 0: nearer surfaces count as this far */
   uint32_t height_px;   /**< height of the picture, at least 1 */
+  uint32_t promise;     /**< meshlode_promise: by which errors the cut is made */
 } meshlode_view;
 
 /** Draw this cluster with this instance's transform. */
@@ -364,7 +372,8 @@ typedef struct meshlode_draw_item {
  * pixel_error  allowed error in pixels, finite and at least 0; 0 selects the finest level \param items        room for
  * `capacity` items; NULL if that is 0 \param capacity     number of items that fit \param count        gets the number
  * of items of the cut \param error        may be NULL \return MESHLODE_USAGE if a member of `view` or pixel_error is
- * outside its range; MESHLODE_TOO_SMALL if capacity is below
+ * outside its range; MESHLODE_UNSUPPORTED if the asset was not built with the view's promise; MESHLODE_TOO_SMALL if
+ * capacity is below
  * `*count`. A call for the count alone costs as much as one for the items: keep the memory between frames. */
 MESHLODE_API meshlode_status meshlode_select_view(const meshlode_asset* asset, const meshlode_view* view,
                                                   double pixel_error, meshlode_draw_item* items, size_t capacity,
@@ -426,11 +435,11 @@ MESHLODE_API const meshlode_page_request* meshlode_page_requests(const meshlode_
 MESHLODE_API const float* meshlode_page_priorities(const meshlode_selector* selector, size_t* count);
 
 /** Chooses the cut of one mesh without a camera: each group whose error is at most `max_error` (object units; infinity
- * is allowed) is replaced. `*stored_error` (may be NULL) gets the largest error in the cut, at least level0_deviation
- * of the mesh. Clusters, capacity, count and errors as for meshlode_select_view. */
-MESHLODE_API meshlode_status meshlode_select_uniform(const meshlode_asset* asset, uint32_t mesh, double max_error,
-                                                     uint32_t* clusters, size_t capacity, size_t* count,
-                                                     double* stored_error, meshlode_error* error);
+ * is allowed) of a meshlode_promise is replaced. `*stored_error` (may be NULL) gets the largest error in the cut, at
+ * least level0_deviation of the mesh. Clusters, capacity, count and errors as for meshlode_select_view. */
+MESHLODE_API meshlode_status meshlode_select_uniform(const meshlode_asset* asset, uint32_t mesh, uint32_t promise,
+                                                     double max_error, uint32_t* clusters, size_t capacity,
+                                                     size_t* count, double* stored_error, meshlode_error* error);
 
 /* --------------------------------------------------------------------------------------------- pages and clusters */
 
@@ -443,9 +452,9 @@ MESHLODE_API uint32_t meshlode_page_of(const meshlode_asset* asset, uint32_t clu
 MESHLODE_API const uint32_t* meshlode_page_dependencies(const meshlode_asset* asset, uint32_t page, uint32_t* count);
 
 /** An order in which to load all pages: each page comes after those that it depends on, and pages with the largest
- * errors come first, over all meshes. So what is loaded at any time is the best for its size. `pages` has room for one
- * id per page. */
-MESHLODE_API meshlode_status meshlode_streaming_order(const meshlode_asset* asset, uint32_t* pages,
+ * errors of a meshlode_promise come first, over all meshes. So what is loaded at any time is the best for its size.
+ * `pages` has room for one id per page. Errors as for meshlode_tables_of. */
+MESHLODE_API meshlode_status meshlode_streaming_order(const meshlode_asset* asset, uint32_t promise, uint32_t* pages,
                                                       meshlode_error* error);
 
 /** How much a page matters, from its groups. Put into the rule of selection (docs/reference/selection.md), the sphere
@@ -458,8 +467,8 @@ typedef struct meshlode_hint {
   uint32_t reserved[2]; /**< 0 */
 } meshlode_hint;
 
-/** The hint of a page; zeros if there is no such page. Derived from the tables with the errors of the chosen promise;
- * `meshlode build --page-hints` stores those of positions in the file, for readers that do not read groups at once. */
+/** The hint of a page; zeros if there is no such page. Derived from the groups, with the errors of positions;
+ * `meshlode build --page-hints` stores the same in the file, for readers that do not read groups at once. */
 MESHLODE_API meshlode_hint meshlode_page_hint(const meshlode_asset* asset, uint32_t page);
 
 /** What to read before the first picture: the pages without which nothing is drawn, those that hold a terminal group of

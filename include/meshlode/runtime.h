@@ -21,8 +21,7 @@
 /// std::bad_alloc.
 ///
 /// Thread safety. Any number of threads may call const members of an AssetFile or a PageBytes at once; each selects
-/// with a ResidentSelector of its own. Calling choose_promise, moving or destroying one while another thread uses it is
-/// a race.
+/// with a ResidentSelector of its own. Moving or destroying one while another thread uses it is a race.
 ///
 /// Not promised: caching (a page loaded twice is unpacked twice); the layout of records in a later format version; a
 /// stable ABI before version 1 (docs/reference/compatibility.md).
@@ -56,6 +55,8 @@ struct View {
   double ortho_height = 1.0;                  ///< world units across the picture's height, above 0; orthographic only
   double near_distance = 1e-3;                ///< world units, above 0: nearer surfaces count as this far
   std::uint32_t height_px = 720;              ///< height of the picture, at least 1
+  /// By which errors the cut is made (docs/reference/selection.md).
+  format::Promise promise = format::Promise::kPosition;
 };
 
 /// The view volume, world space: a point p is inside where a·p.x + b·p.y + c·p.z + d >= 0 for each plane (a, b, c, d).
@@ -80,6 +81,13 @@ struct DrawItem {
 struct PageRequest {
   std::uint32_t page;  ///< into AssetFile::pages()
   float priority;      ///< see ResidentSelector::page_priorities
+};
+
+/// The tables that hold errors.
+struct PromiseTables {
+  std::span<const format::MeshRecord> meshes;   ///< as AssetFile::meshes(), but level0_deviation
+  std::span<const format::GroupRecord> groups;  ///< as AssetFile::groups(), but error
+  std::span<const format::NodeRecord> nodes;    ///< as AssetFile::nodes(), but error
 };
 
 /// Bytes of the file.
@@ -148,7 +156,8 @@ class ResidentSelector {
   /// Page p is resident iff bit p % 32 of word p / 32 of `resident` is set; pages behind its end are not. `items` gets
   /// what is drawn, and takes memory only where it has to grow. Without a frustum nothing is culled; with one, items
   /// whose culling sphere is outside are left out, and pages that only such clusters want are not asked for. Errors:
-  /// kUsage if pixel_error or a member of `view` is outside its range.
+  /// kUsage if pixel_error or a member of `view` is outside its range; kUnsupported if the asset has no errors of the
+  /// view's promise. Views may alternate between promises.
   [[nodiscard]] Status select(const View& view, double pixel_error, std::span<const std::uint32_t> resident,
                               std::vector<DrawItem>& items, const Frustum* frustum = nullptr);
 
@@ -233,11 +242,10 @@ class AssetFile {
   /// JSON in the shape of glTF: nodes, materials, textures, cameras, animations.
   [[nodiscard]] std::string_view scene_json() const;
 
-  /// Chooses by which errors cuts are made; positions when an asset is opened. From now on the errors of meshes(),
-  /// groups() and nodes() are those of the promise: upload them again if you select on a GPU. Views of them stay valid
-  /// until the next choice. Not while another thread uses the asset. \return kUsage for an unknown value; kUnsupported
-  /// if the asset has no such errors, with how to build it.
-  [[nodiscard]] Status choose_promise(format::Promise promise);
+  /// What to upload to select by a promise on a GPU: meshes(), groups() and nodes() have the errors of positions. Views
+  /// that live as long as the asset. \return kUsage for an unknown value; kUnsupported if the asset has no such errors,
+  /// with how to build it.
+  [[nodiscard]] Result<PromiseTables> tables_of(format::Promise promise) const;
 
   /// Chooses the clusters to draw for `view`, ascending by (instance, cluster). No point of the surface is displaced by
   /// more than max(pixel_error, MeshRecord::level0_deviation in pixels), as far as the mesh's error tier guarantees.
@@ -245,7 +253,8 @@ class AssetFile {
   /// the pages of the result (page_of) need not be loaded yet. No occlusion culling. Singular instances are
   /// skipped. \param view         the camera \param pixel_error  allowed displacement in pixels, finite and at least 0;
   /// 0 selects the finest level \param frustum  null: nothing is culled; else items whose culling sphere is outside are
-  /// left out \return kUsage if pixel_error or a member of `view` is outside its range
+  /// left out \return kUsage if pixel_error or a member of `view` is outside its range; kUnsupported if the asset has
+  /// no errors of the view's promise
   [[nodiscard]] Result<std::vector<DrawItem>> select_view(const View& view, double pixel_error,
                                                           const Frustum* frustum = nullptr) const;
 
@@ -254,14 +263,16 @@ class AssetFile {
 
   /// Chooses the cut of one mesh in which each group with an error of at most `max_error` (object units) is replaced.
   /// \return kUsage for a mesh that does not exist or a max_error that is not a number of at least 0 (infinity: the
-  /// coarsest cut)
-  [[nodiscard]] Result<UniformCut> select_uniform(std::uint32_t mesh, double max_error) const;
+  /// coarsest cut); kUnsupported if the asset has no errors of the promise
+  [[nodiscard]] Result<UniformCut> select_uniform(std::uint32_t mesh, double max_error,
+                                                  format::Promise promise = format::Promise::kPosition) const;
 
   /// An order in which to load all pages: each behind those that it depends on, and those with the largest errors
-  /// first, over all meshes.
-  [[nodiscard]] std::vector<std::uint32_t> streaming_order() const;
+  /// first, over all meshes. Errors: kUnsupported if the asset has no errors of the promise.
+  [[nodiscard]] Result<std::vector<std::uint32_t>> streaming_order(
+      format::Promise promise = format::Promise::kPosition) const;
 
-  /// How much a page matters, from its groups, with the errors of the chosen promise. Put into the rule of selection,
+  /// How much a page matters, from its groups, with the errors of positions. Put into the rule of selection,
   /// sphere and largest error give at least the projected error of any group of the page, and of what depends on it.
   /// \pre page < pages().size()
   [[nodiscard]] format::PageHintRecord page_hint(std::uint32_t page) const;

@@ -128,7 +128,8 @@ TEST_P(CApi, CutsAreThoseOfTheRule) {
     point.eye = {0.0, 0.0, distance};
     const auto drawn = expected->select_view(point, 1.0);
     ASSERT_TRUE(drawn.ok());
-    const meshlode_view view = {{0.0, 0.0, distance}, 0, point.fovy_radians, 1.0, point.near_distance, point.height_px};
+    const meshlode_view view = {{0.0, 0.0, distance}, 0, point.fovy_radians, 1.0, point.near_distance,
+                                point.height_px,      0};
     std::size_t count = 0;
     EXPECT_EQ(meshlode_select_view(asset_, &view, 1.0, nullptr, 0, &count, &error_), MESHLODE_TOO_SMALL);
     EXPECT_NE(error_.text[0], '\0');
@@ -148,12 +149,12 @@ TEST_P(CApi, CutsAreThoseOfTheRule) {
     std::vector<std::uint32_t> clusters(cut->clusters.size());
     std::size_t count = 0;
     double stored = -1.0;
-    ASSERT_EQ(meshlode_select_uniform(asset_, 0, error, clusters.data(), clusters.size(), &count, &stored, nullptr),
+    ASSERT_EQ(meshlode_select_uniform(asset_, 0, 0, error, clusters.data(), clusters.size(), &count, &stored, nullptr),
               MESHLODE_OK);
     EXPECT_EQ(clusters, cut->clusters);
     EXPECT_EQ(stored, cut->stored_error);
     if (count < 2) continue;
-    EXPECT_EQ(meshlode_select_uniform(asset_, 0, error, clusters.data(), 1, &count, nullptr, nullptr),
+    EXPECT_EQ(meshlode_select_uniform(asset_, 0, 0, error, clusters.data(), 1, &count, nullptr, nullptr),
               MESHLODE_TOO_SMALL);
     EXPECT_EQ(count, clusters.size());
   }
@@ -212,7 +213,7 @@ TEST_P(CApi, ClustersDecodeAsInCpp) {
 
 TEST_P(CApi, StreamingOrderLoadsWhatAPageNeedsBeforeIt) {
   std::vector<std::uint32_t> order(page_count());
-  ASSERT_EQ(meshlode_streaming_order(asset_, order.data(), &error_), MESHLODE_OK);
+  ASSERT_EQ(meshlode_streaming_order(asset_, 0, order.data(), &error_), MESHLODE_OK);
   std::set<std::uint32_t> loaded;
   for (const std::uint32_t page : order) {
     ASSERT_LT(page, order.size());
@@ -226,7 +227,7 @@ TEST_P(CApi, StreamingOrderLoadsWhatAPageNeedsBeforeIt) {
   // The first page draws something alone: the coarsest cut of a mesh lies in it.
   std::size_t count = 0;
   std::vector<std::uint32_t> roots(1000);
-  ASSERT_EQ(meshlode_select_uniform(asset_, 0, 1e30, roots.data(), roots.size(), &count, nullptr, &error_),
+  ASSERT_EQ(meshlode_select_uniform(asset_, 0, 0, 1e30, roots.data(), roots.size(), &count, nullptr, &error_),
             MESHLODE_OK);
   for (std::size_t i = 0; i < count; ++i) EXPECT_EQ(meshlode_page_of(asset_, roots[i]), order[0]);
 }
@@ -262,10 +263,10 @@ TEST_P(CApi, ArgumentsThatMakeNoSenseAreUsageErrors) {
   EXPECT_EQ(meshlode_decode_floats(asset_, {page_count(), words.data()}, 0, &f, nullptr), MESHLODE_USAGE);
   EXPECT_EQ(meshlode_page_of(asset_, clusters), MESHLODE_NONE);
   std::size_t count = 0;
-  EXPECT_EQ(meshlode_select_uniform(asset_, 1, 0.0, nullptr, 0, &count, nullptr, nullptr), MESHLODE_USAGE);
-  EXPECT_EQ(meshlode_select_uniform(asset_, 0, std::nan(""), nullptr, 0, &count, nullptr, nullptr), MESHLODE_USAGE);
+  EXPECT_EQ(meshlode_select_uniform(asset_, 1, 0, 0.0, nullptr, 0, &count, nullptr, nullptr), MESHLODE_USAGE);
+  EXPECT_EQ(meshlode_select_uniform(asset_, 0, 0, std::nan(""), nullptr, 0, &count, nullptr, nullptr), MESHLODE_USAGE);
   const auto refuses = [&](auto change) {
-    meshlode_view view = {{0.0, 0.0, 3.0}, 0, 0.8, 1.0, 0.01, 720};
+    meshlode_view view = {{0.0, 0.0, 3.0}, 0, 0.8, 1.0, 0.01, 720, 0};
     change(view);
     return meshlode_select_view(asset_, &view, 1.0, nullptr, 0, &count, nullptr) == MESHLODE_USAGE;
   };
@@ -277,43 +278,29 @@ TEST_P(CApi, ArgumentsThatMakeNoSenseAreUsageErrors) {
   EXPECT_TRUE(refuses([](meshlode_view& v) { v.is_orthographic = 1, v.ortho_height = 0.0; }));
 }
 
-TEST_P(CApi, AnAssetWithoutPromisesKeepsThatOfPositions) {
-  EXPECT_EQ(meshlode_choose_promise(asset_, MESHLODE_PROMISE_POSITION, &error_), MESHLODE_OK);
-  EXPECT_EQ(meshlode_choose_promise(asset_, MESHLODE_PROMISE_TEXELS, &error_), MESHLODE_UNSUPPORTED);
-  EXPECT_NE(std::string(error_.text).find("--promise texels"), std::string::npos) << error_.text;
-  EXPECT_EQ(meshlode_choose_promise(asset_, 3, &error_), MESHLODE_USAGE);
-}
-
-TEST(CApiPromise, CutsAreMadeByTheChosenErrors) {
-  const Arrays arrays(lab::with_smooth_normals(lab::make_sphere(48)));
-  BuildOptions options;
-  options.promise = format::Promise::kAppearance;
-  const auto bytes = test::build_one(arrays.primitive(), options);
-  ASSERT_TRUE(bytes.ok());
-  meshlode_asset* asset = nullptr;
-  meshlode_error error{};
-  ASSERT_EQ(meshlode_open_buffer(bytes->data(), bytes->size(), &asset, &error), MESHLODE_OK) << error.text;
-  auto expected = AssetFile::view(*bytes);
-  ASSERT_TRUE(expected.ok());
-  std::size_t counts[3] = {};
-  for (std::uint32_t promise = 0; promise < 3; ++promise) {
-    ASSERT_EQ(meshlode_choose_promise(asset, promise, &error), MESHLODE_OK) << error.text;
-    ASSERT_TRUE(expected->choose_promise(static_cast<format::Promise>(promise)));
-    std::uint32_t count = 0;
-    const meshlode_group* groups = meshlode_groups(asset, &count);
-    for (std::uint32_t g = 0; g < count; ++g) EXPECT_EQ(groups[g].error, expected->groups()[g].error);
-    std::vector<std::uint32_t> clusters(4096);
-    ASSERT_EQ(
-        meshlode_select_uniform(asset, 0, 0.01, clusters.data(), clusters.size(), &counts[promise], nullptr, &error),
-        MESHLODE_OK)
-        << error.text;
-    clusters.resize(counts[promise]);
-    EXPECT_EQ(clusters, expected->select_uniform(0, 0.01)->clusters);
+TEST_P(CApi, APromiseThatWasNotBuiltIsRefusedEverywhere) {
+  meshlode_promise_tables tables{};
+  EXPECT_EQ(meshlode_tables_of(asset_, MESHLODE_PROMISE_POSITION, &tables, &error_), MESHLODE_OK);
+  std::uint32_t group_count = 0;
+  EXPECT_EQ(tables.groups, meshlode_groups(asset_, &group_count));
+  meshlode_selector* selector = nullptr;
+  ASSERT_EQ(meshlode_create_selector(asset_, &selector, nullptr), MESHLODE_OK);
+  std::vector<std::uint32_t> words(4096);
+  std::size_t count = 0;
+  for (const std::uint32_t promise : {1U, 2U, 3U, 0xFFFFFFFFU}) {
+    const meshlode_status expected = promise <= MESHLODE_PROMISE_APPEARANCE ? MESHLODE_UNSUPPORTED : MESHLODE_USAGE;
+    const meshlode_view view = {{0.0, 0.0, 3.0}, 0, 0.8, 1.0, 0.01, 720, promise};
+    meshlode_draw_item item{};
+    EXPECT_EQ(meshlode_tables_of(asset_, promise, &tables, &error_), expected);
+    EXPECT_EQ(meshlode_select_view(asset_, &view, 1.0, &item, 1, &count, &error_), expected);
+    EXPECT_EQ(meshlode_select_resident(selector, &view, nullptr, 1.0, nullptr, &item, 1, &count, &error_), expected);
+    EXPECT_EQ(meshlode_select_uniform(asset_, 0, promise, 0.0, words.data(), words.size(), &count, nullptr, &error_),
+              expected);
+    EXPECT_EQ(meshlode_streaming_order(asset_, promise, words.data(), &error_), expected);
+    const std::string remedy = promise == 1 ? "--promise texels" : promise == 2 ? "--promise appearance" : "promise";
+    EXPECT_NE(std::string(error_.text).find(remedy), std::string::npos) << error_.text;
   }
-  EXPECT_EQ(counts[0], counts[1]) << "nothing samples a texture";
-  EXPECT_GT(counts[2], counts[0]) << "normals ask for more";
-  EXPECT_FALSE(expected->choose_promise(static_cast<format::Promise>(7)));
-  meshlode_close(asset);
+  meshlode_destroy_selector(selector);
 }
 
 INSTANTIATE_TEST_SUITE_P(Codecs, CApi,

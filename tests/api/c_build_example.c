@@ -75,7 +75,7 @@ int main(void) {
     return (int)error.status;
   }
   for (d = 0; d < sizeof distances / sizeof *distances; ++d) {
-    meshlode_view view = {{0.0, 0.0, 0.0}, 0, 0.8, 0.0, 0.01, 720};
+    meshlode_view view = {{0.0, 0.0, 0.0}, 0, 0.8, 0.0, 0.01, 720, MESHLODE_PROMISE_POSITION};
     meshlode_draw_item* items;
     view.eye[1] = distances[d];
     if (meshlode_select_view(asset, &view, 1.0, NULL, 0, &count, &error) != MESHLODE_TOO_SMALL) return 1;

@@ -25,7 +25,7 @@ static void** load_pages(const meshlode_asset* asset, meshlode_error* error) {
   const meshlode_page* pages = meshlode_pages(asset, &count);
   void** loaded = calloc(count ? count : 1, sizeof *loaded);
   uint32_t* order = malloc((count ? count : 1) * sizeof *order);
-  int ok = loaded && order && meshlode_streaming_order(asset, order, error) == MESHLODE_OK;
+  int ok = loaded && order && meshlode_streaming_order(asset, MESHLODE_PROMISE_POSITION, order, error) == MESHLODE_OK;
   for (i = 0; ok && i < count; ++i) {
     const uint32_t page = order[i];
     loaded[page] = malloc(pages[page].bytes);
@@ -40,7 +40,7 @@ static void** load_pages(const meshlode_asset* asset, meshlode_error* error) {
 int main(int argc, char** argv) {
   meshlode_asset* asset;
   meshlode_error error;
-  const meshlode_view view = {{0.0, 1.0, 3.0}, 0, 0.8, 0.0, 0.01, 720};
+  const meshlode_view view = {{0.0, 1.0, 3.0}, 0, 0.8, 0.0, 0.01, 720, MESHLODE_PROMISE_POSITION};
   meshlode_draw_item* items;
   size_t count, i;
   void** pages;

@@ -121,7 +121,8 @@ void expect_cuts_of_what_is_resident(const Bytes& bytes) {
                          view.fovy_radians,
                          view.ortho_height,
                          view.near_distance,
-                         view.height_px};
+                         view.height_px,
+                         static_cast<std::uint32_t>(view.promise)};
     const double up[3] = {0.0, 1.0, 0.0};
     meshlode_frustum c_frustum{};
     ASSERT_EQ(meshlode_make_frustum(&c_view, target.data(), up, 1.5, &c_frustum, nullptr), MESHLODE_OK);
@@ -255,7 +256,7 @@ TEST(ApiHead, WhatMakesNoSenseIsAnError) {
   EXPECT_EQ(meshlode_image_of_texture(streamed.asset, 0), MESHLODE_NONE);
   EXPECT_EQ(meshlode_blob_of_image(streamed.asset, 0), MESHLODE_NONE);
 
-  meshlode_view look{{0, 0, 3}, 0, 0.8, 0, 0.01, 720};
+  meshlode_view look{{0, 0, 3}, 0, 0.8, 0, 0.01, 720, 0};
   meshlode_frustum frustum{};
   const double at[3] = {0, 0, 0}, up[3] = {0, 1, 0}, along[3] = {0, 0, -2}, infinite[3] = {HUGE_VAL, 0, 0};
   EXPECT_EQ(meshlode_make_frustum(&look, at, up, 1.5, &frustum, &error), MESHLODE_OK);
@@ -287,7 +288,7 @@ TEST(ApiHead, WhatMakesNoSenseIsAnError) {
   auto taken = AssetFile::take_head(streamed.head, bytes->size());
   ASSERT_TRUE(taken.ok());
   EXPECT_FALSE(taken->load_page(0).ok());
-  EXPECT_EQ(taken->streaming_order().size(), taken->pages().size());
+  EXPECT_EQ(taken->streaming_order()->size(), taken->pages().size());
   AssetFile moved = std::move(*taken);
   ResidentSelector one = moved.resident_selector();
   ResidentSelector other = std::move(one);

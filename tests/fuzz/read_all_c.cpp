@@ -62,7 +62,8 @@ void read_all_c(std::span<const std::uint8_t> bytes) {
   std::uint32_t count = 0;
   const meshlode_page* pages = meshlode_pages(asset, &count);
   std::vector<std::uint32_t> order(count);
-  require(meshlode_streaming_order(asset, order.data(), &error) == MESHLODE_OK, "no order of pages");
+  require(meshlode_streaming_order(asset, MESHLODE_PROMISE_POSITION, order.data(), &error) == MESHLODE_OK,
+          "no order of pages");
   std::vector<bool> is_loaded(count);
   for (const std::uint32_t p : order) {
     std::uint32_t needed_count = 0;

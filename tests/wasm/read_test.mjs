@@ -29,11 +29,11 @@ function native(path) {
 const raw = (array) => Buffer.from(array.buffer, array.byteOffset, array.byteLength);
 const words = (...values) => raw(Uint32Array.from(values));
 
-function putCuts(asset, parts) {
+function putCuts(asset, promise, parts) {
   for (let step = 0; step < 12; ++step) {
     const distance = 2 ** step / 8;
     asset.meshes.forEach((mesh, m) => {
-      const cut = asset.selectUniform(m, (mesh.diagonal * distance) / 256);
+      const cut = asset.selectUniform(m, (mesh.diagonal * distance) / 256, promise);
       parts.push(words(cut.clusters.length), raw(cut.clusters), raw(Float64Array.of(cut.storedError)));
     });
     const { instances, clusters } = asset.selectView(
@@ -44,6 +44,7 @@ function putCuts(asset, parts) {
         orthoHeight: distance,
         nearDistance: 0.0625,
         heightPx: 720,
+        promise,
       },
       1.5,
     );
@@ -77,15 +78,14 @@ function decoded(path) {
     asset?.close();
     return { bytes: Buffer.concat(parts), refusal: error };
   }
-  putCuts(asset, parts);
-  for (const promise of ['texels', 'appearance']) {
+  for (const promise of ['position', 'texels', 'appearance']) {
     try {
-      asset.choosePromise(promise);
+      asset.checkPromise(promise);
     } catch (error) {
       if (!(error instanceof MeshlodeError) || error.status !== 'unsupported') throw error;
       continue;
     }
-    putCuts(asset, parts);
+    putCuts(asset, promise, parts);
   }
   asset.close();
   return { bytes: Buffer.concat(parts), refusal: null };
@@ -112,35 +112,39 @@ function badTexts(path) {
   return count;
 }
 
-/** A promise changes cuts and the tables, is refused where there is none, and leaves what it was then. */
+/** A promise is an argument: cuts are by its tables, it is refused where there is none, and other selections do not notice. */
 function checkPromises(promising, plain) {
   const asset = runtime.open(readFileSync(promising));
   const error = asset.meshes[0].diagonal / 100;
+  const trianglesOf = (clusters) => Array.from(clusters).reduce((sum, c) => sum + asset.clusters[c].triangleCount, 0);
   const counts = ['position', 'texels', 'appearance'].map((promise) => {
-    asset.choosePromise(promise);
-    const cut = asset.selectUniform(0, error);
+    const cut = asset.selectUniform(0, error, promise);
+    const { meshes, groups } = asset.tablesOf(promise);
     const worst = Math.max(...Array.from(cut.clusters, (c) => asset.clusters[c].ownGroup)
-      .map((group) => asset.groups[group]?.error ?? asset.meshes[0].level0Deviation));
-    expect(asset.promise === promise && worst <= error && cut.storedError <= error, `${promise}: the tables are those of the cut`);
-    return Array.from(cut.clusters).reduce((sum, c) => sum + asset.clusters[c].triangleCount, 0);
+      .map((group) => groups[group]?.error ?? meshes[0].level0Deviation));
+    expect(worst <= error && cut.storedError <= error, `${promise}: the tables are those of the cut`);
+    return trianglesOf(cut.clusters);
   });
   expect(counts[0] <= counts[1] && counts[1] <= counts[2] && counts[0] < counts[2], `more is promised with more triangles: ${counts.join(' ')}`);
-  let refusal = null;
-  try {
-    asset.choosePromise('colour');
-  } catch (caught) {
-    refusal = caught;
-  }
-  expect(refusal?.status === 'usage' && asset.promise === 'appearance', `a promise that is none: ${refusal?.message}`);
+  expect(trianglesOf(asset.selectUniform(0, error).clusters) === counts[0], 'a cut without a promise is by positions');
+  const refusalOf = (call) => {
+    try {
+      call();
+    } catch (caught) {
+      return caught;
+    }
+    return null;
+  };
+  const view = { eye: [0, 0, 3], fovyRadians: 0.8, nearDistance: 0.01, heightPx: 720 };
+  const none = refusalOf(() => asset.selectView({ ...view, promise: 'colour' }, 1));
+  expect(none?.status === 'usage', `a promise that is none: ${none?.message}`);
   asset.close();
   const other = runtime.open(readFileSync(plain));
-  refusal = null;
-  try {
-    other.choosePromise('texels');
-  } catch (caught) {
-    refusal = caught;
+  for (const call of [() => other.checkPromise('texels'), () => other.selectUniform(0, 0, 'texels'), () => other.streamingOrder('texels'),
+    () => other.selectView({ ...view, promise: 'texels' }, 1)]) {
+    const refusal = refusalOf(call);
+    expect(refusal?.status === 'unsupported', `a promise that was not built: ${refusal?.message}`);
   }
-  expect(refusal?.status === 'unsupported' && other.promise === 'position', `a promise that was not built: ${refusal?.message}`);
   other.close();
 }
 

@@ -65,7 +65,7 @@ static int put_pages(const meshlode_asset* asset, meshlode_error* error) {
   return 1;
 }
 
-static void put_cuts(const meshlode_asset* asset) {
+static void put_cuts(const meshlode_asset* asset, uint32_t promise) {
   uint32_t mesh_count, instance_count, cluster_count;
   const meshlode_mesh* meshes = meshlode_meshes(asset, &mesh_count);
   meshlode_instances(asset, &instance_count);
@@ -79,7 +79,7 @@ static void put_cuts(const meshlode_asset* asset) {
     for (uint32_t m = 0; m < mesh_count; ++m) {
       size_t count = 0;
       double stored_error = 0;
-      if (meshlode_select_uniform(asset, m, meshes[m].diagonal * distance / 256, ids, cluster_count, &count,
+      if (meshlode_select_uniform(asset, m, promise, meshes[m].diagonal * distance / 256, ids, cluster_count, &count,
                                   &stored_error, NULL) != MESHLODE_OK) {
         exit(3);
       }
@@ -88,7 +88,7 @@ static void put_cuts(const meshlode_asset* asset) {
       put(&stored_error, sizeof stored_error);
     }
     const meshlode_view view = {
-        {0.25 * distance, 0.5 * distance, distance}, step % 3 == 2, 0.75, distance, 0.0625, 720};
+        {0.25 * distance, 0.5 * distance, distance}, step % 3 == 2, 0.75, distance, 0.0625, 720, promise};
     size_t count = 0;
     if (meshlode_select_view(asset, &view, 1.5, items, capacity, &count, NULL) != MESHLODE_OK) exit(3);
     put_u32((uint32_t)count);
@@ -112,9 +112,9 @@ int main(int argc, char** argv) {
   void* bytes = malloc((size_t)size + 1);
   if (bytes == NULL || fread(bytes, 1, (size_t)size, in) != (size_t)size) return 2;
   if (meshlode_open_buffer(bytes, (size_t)size, &asset, &error) == MESHLODE_OK && put_pages(asset, &error)) {
-    put_cuts(asset);
-    for (uint32_t promise = MESHLODE_PROMISE_TEXELS; promise <= MESHLODE_PROMISE_APPEARANCE; ++promise) {
-      if (meshlode_choose_promise(asset, promise, NULL) == MESHLODE_OK) put_cuts(asset);
+    for (uint32_t promise = MESHLODE_PROMISE_POSITION; promise <= MESHLODE_PROMISE_APPEARANCE; ++promise) {
+      meshlode_promise_tables tables;
+      if (meshlode_tables_of(asset, promise, &tables, NULL) == MESHLODE_OK) put_cuts(asset, promise);
     }
   } else {
     put_u32((uint32_t)error.status);

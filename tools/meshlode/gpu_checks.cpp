@@ -86,9 +86,9 @@ void add_check(const judge::GpuCheck& check, const std::string& device, judge::V
 
 }  // namespace
 
-Status verify_with_gpu(run::Asset& asset, const scene::Scene& source, const GpuOptions& options,
+Status verify_with_gpu(const run::Asset& opened, const scene::Scene& source, const GpuOptions& options,
                        judge::VerifyReport& report) {
-  if (const Status chosen = choose_promise(options.promise, asset); !chosen) return chosen;
+  TRY_LET(asset, with_promise(opened, options.promise));
   judge::GpuVerifyOptions judge;
   judge.device.device = options.device;
   judge.orbits = options.orbits;
@@ -110,7 +110,7 @@ Status verify_with_gpu(run::Asset& asset, const scene::Scene& source, const GpuO
   if (!options.out_folder.empty()) {
     if (const Status free = output_files().claim(report_path); !free) return free;
   }
-  TRY_LET(verified, judge::verify_on_gpu(asset, source, judge));
+  TRY_LET(verified, judge::verify_on_gpu(*asset, source, judge));
   if (options.is_explained) {
     std::fprintf(stderr, "passes of %s\n%s", verified->device.name.c_str(), verified->plan.c_str());
   }

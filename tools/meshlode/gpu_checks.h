@@ -24,8 +24,8 @@ struct GpuOptions {
 };
 
 /// What the GPU finds, as checks and findings of the same report; heat maps and gpu.json where a folder is given.
-/// `asset`: its promise is chosen. Errors: as of choose_promise() and judge::verify_on_gpu().
-[[nodiscard]] Status verify_with_gpu(run::Asset& asset, const scene::Scene& source, const GpuOptions& options,
+/// Errors: as of with_promise() and judge::verify_on_gpu().
+[[nodiscard]] Status verify_with_gpu(const run::Asset& asset, const scene::Scene& source, const GpuOptions& options,
                                      judge::VerifyReport& report);
 
 /// The same of streaming: frames drawn from a pool of pages. Errors: as of judge::verify_streaming_on_gpu().

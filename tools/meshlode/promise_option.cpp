@@ -12,8 +12,8 @@ void add_promise_option(OptionParser& parser, std::string& promise) {
       all_names(format::kPromiseNames));
 }
 
-Status choose_promise(const std::string& promise, run::Asset& asset) {
-  return asset.choose(value_in(format::kPromiseNames, promise).value_or(format::Promise::kPosition));
+Result<run::Asset> with_promise(const run::Asset& asset, const std::string& promise) {
+  return asset.with_promise(value_in(format::kPromiseNames, promise).value_or(format::Promise::kPosition));
 }
 
 }  // namespace meshlode::cli

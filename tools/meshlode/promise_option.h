@@ -13,7 +13,8 @@ namespace meshlode::cli {
 
 void add_promise_option(OptionParser& parser, std::string& promise);
 
-/// Errors: kUnsupported, with how to build one, where the asset does not promise that. \pre one of the parser's words
-[[nodiscard]] Status choose_promise(const std::string& promise, run::Asset& asset);
+/// The asset by that promise. Errors: kUnsupported, with how to build one, where it has none. \pre one of the parser's
+/// words
+[[nodiscard]] Result<run::Asset> with_promise(const run::Asset& asset, const std::string& promise);
 
 }  // namespace meshlode::cli

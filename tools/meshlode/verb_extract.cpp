@@ -208,9 +208,10 @@ FileOutcome extract_file(const BulkInput& input, const ExtractOptions& o) {
     return out;
   };
   const CutRequest& r = o.request;
-  auto asset = open_asset(input.path, o.max_decoded);
+  const auto opened = open_asset(input.path, o.max_decoded);
+  if (!opened) return fail(opened.error());
+  const auto asset = with_promise(*opened, o.promise);
   if (!asset) return fail(asset.error());
-  if (const Status promised = choose_promise(o.promise, *asset); !promised) return fail(promised.error());
   if (o.is_stuck) return extract_stuck(*asset, input.output, o.out);
   auto chosen = choose_meshes(*asset, o.mesh);
   if (!chosen) return fail(chosen.error());

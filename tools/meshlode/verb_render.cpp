@@ -254,9 +254,10 @@ FileOutcome render_file(const BulkInput& input, const RenderOptions& options) {
     out.fail(std::move(error));
     return out;
   };
-  Result<run::Asset> asset = open_asset(input.path, options.max_decoded);
+  const Result<run::Asset> opened = open_asset(input.path, options.max_decoded);
+  if (!opened) return fail(opened.error());
+  const Result<run::Asset> asset = with_promise(*opened, options.promise);
   if (!asset) return fail(asset.error());
-  if (const Status chosen = choose_promise(options.promise, *asset); !chosen) return fail(chosen.error());
   const Result<run::Camera> camera = make_camera(options.camera, *asset);
   if (!camera) return fail(camera.error());
   const Result<run::AttributeBounds> bounds = make_bounds(options.bounds, *asset);

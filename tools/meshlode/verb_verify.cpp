@@ -149,9 +149,8 @@ FileOutcome verify_file(const BulkInput& input, const VerifyCommand& command) {
   if (command.is_source_folder && input.source.empty()) {
     source_options.path = source_below(command.source.path, input, *asset);
   }
-  if (gpu_options.is_on) {  // asked before anything is measured, and chosen by verify_with_gpu() alone
-    if (const Status chosen = choose_promise(gpu_options.promise, *asset); !chosen) return fail(chosen.error());
-    if (const Status back = asset->choose(format::Promise::kPosition); !back) return fail(back.error());
+  if (gpu_options.is_on) {  // asked before anything is measured
+    if (const auto promised = with_promise(*asset, gpu_options.promise); !promised) return fail(promised.error());
   }
   if (const Status size = check_size(*asset); !size) {
     return fail({size.error().code, path + ": " + size.error().where, size.error().detail});

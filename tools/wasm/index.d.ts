@@ -141,6 +141,8 @@ export interface View {
   orthoHeight?: number;
   nearDistance: number;
   heightPx: number;
+  /** By which errors the cut is made; left out: `position`. */
+  promise?: PromiseKind;
 }
 
 export interface DecodedFloats {
@@ -198,14 +200,14 @@ export interface Asset {
   /** Text of the asset as JSON, which opening does not check: throws MeshlodeError `invalid` where it is none; `scene` too. */
   readonly meta: unknown;
   readonly scene: unknown;
-  /** By whose errors cuts are made; `position` when an asset is opened. */
-  readonly promise: PromiseKind;
   /**
-   * Makes cuts by the errors of another promise; `meshes` and `groups` are then other arrays, with its errors. Errors:
-   * unsupported, where the asset was not built with it.
+   * `meshes` and `groups` have the errors of positions; these are as they are, with those of a promise. Errors: unsupported, where the
+   * asset was not built with it.
    */
-  choosePromise(promise: PromiseKind): void;
-  selectUniform(mesh: number, maxError: number): { clusters: Uint32Array; storedError: number };
+  tablesOf(promise: PromiseKind): { meshes: Mesh[]; groups: Group[] };
+  /** Throws where the asset was not built with a promise. */
+  checkPromise(promise: PromiseKind): void;
+  selectUniform(mesh: number, maxError: number, promise?: PromiseKind): { clusters: Uint32Array; storedError: number };
   selectView(view: View, pixelError: number, frustum?: Frustum | null): Cut;
   /** The view volume: four sides and the plane through the eye; `aspect` is width over height. */
   makeFrustum(view: View, target: Triple, up: Triple, aspect: number): Float64Array;

@@ -166,7 +166,13 @@ function putView(runtime, at, view, frustum) {
   to.setFloat64(at + 40, view.orthoHeight ?? 0, true);
   to.setFloat64(at + 48, view.nearDistance, true);
   to.setUint32(at + 56, view.heightPx, true);
+  to.setUint32(at + 60, promiseNumber(view.promise), true);
   for (let i = 0; frustum && i < 24; ++i) to.setFloat64(at + 64 + 8 * i, frustum[i], true);
+}
+
+/** What is none of the words has no number, and is refused as that. */
+function promiseNumber(promise = PROMISES[0]) {
+  return PROMISES.indexOf(promise) >>> 0;
 }
 
 /** Pairs of 32 bits as two arrays of their own; `Second`: type of the second ones. */
@@ -192,7 +198,6 @@ class Asset {
   #at;
   #bytes;
   #pages = new Map(); // page -> address of its decoded bytes
-  #promise = PROMISES[0];
   #selectors = new Set(); // open ones
   #cluster = 0; // memory for one decoded cluster, made when it is first wanted
   #tables = {}; // made when they are first wanted: an asset may have millions of clusters
@@ -226,9 +231,22 @@ class Asset {
   get blobs() {
     return (this.#tables.blobs ??= this.#records('blobs', 48, (v, p) => this.#blob(v, p)));
   }
-  /** A copy of a table of the file as it lies there, in words: 14 a group, 6 a cluster. Errors are of the promise that was chosen. */
-  tableWords(name) {
-    return this.#uints(this.#table(name), ({ groups: 14, clusters: 6 })[name] * this.#count(name));
+  /** A copy of a table of the file as it lies there, in words: 14 a group, 6 a cluster. Errors of groups are those of `promise`. */
+  tableWords(name, promise) {
+    const at = this.#tablesOf(promise)[name] ?? this.#table(name);
+    return this.#uints(at, ({ groups: 14, clusters: 6 })[name] * this.#count(name));
+  }
+  /** {meshes, groups} with the errors of a promise (level0Deviation, error), where `meshes` and `groups` have those of positions. */
+  tablesOf(promise) {
+    const { meshes, groups } = this.#tablesOf(promise);
+    return {
+      meshes: this.#records('meshes', 200, (v, p) => this.#mesh(v, p), meshes),
+      groups: this.#records('groups', 56, readGroup, groups),
+    };
+  }
+  /** Throws where the asset was not built with that one of PROMISES, which selections then refuse. */
+  checkPromise(promise) {
+    this.#tablesOf(promise);
   }
   /** The farthest that anything of a mesh is from its origin, as selections take it. */
   reachOf(mesh) {
@@ -260,36 +278,19 @@ class Asset {
     return this.#json('scene_json');
   }
 
-  /** The one of PROMISES by whose errors cuts are made: `position` until another one is chosen. */
-  get promise() {
-    return this.#promise;
-  }
-
   /**
-   * Makes cuts by the errors of one of PROMISES. `meshes` (level0Deviation) and `groups` (error) are then read anew; what was taken
-   * of them before keeps what it said. Refused, and nothing changed, where the asset was not built with it.
+   * Clusters of a mesh's cut by the errors of a promise, ascending: {clusters, storedError}. `maxError` in units of the mesh; Infinity:
+   * the coarsest.
    */
-  choosePromise(promise) {
-    const frame = new Frame(this.#runtime, ERROR_BYTES);
-    try {
-      // What is none of the words has no number, and is refused as that.
-      const number = PROMISES.indexOf(promise) >>> 0;
-      this.#check(this.#wasm.meshlode_choose_promise(this.#at, number, frame.at), frame.at);
-      this.#promise = promise;
-      this.#tables.meshes = this.#tables.groups = undefined;
-    } finally {
-      frame.end();
-    }
-  }
-
-  /** Clusters of a mesh's cut, ascending: {clusters, storedError}. `maxError` in units of the mesh; Infinity: the coarsest. */
-  selectUniform(mesh, maxError) {
+  selectUniform(mesh, maxError, promise) {
     const capacity = this.meshes[mesh]?.clusterCount ?? 0;
     const frame = new Frame(this.#runtime, 16 + ERROR_BYTES + 4 * capacity);
     try {
       const items = frame.at + 16 + ERROR_BYTES;
       this.#check(
-        this.#wasm.meshlode_select_uniform(this.#at, mesh, maxError, items, capacity, frame.at, frame.at + 8, frame.at + 16),
+        this.#wasm.meshlode_select_uniform(
+          this.#at, mesh, promiseNumber(promise), maxError, items, capacity, frame.at, frame.at + 8, frame.at + 16,
+        ),
         frame.at + 16,
       );
       const view = this.#runtime.view();
@@ -365,12 +366,12 @@ class Asset {
     }
   }
 
-  /** All pages, the most important first, each after those it depends on. */
-  streamingOrder() {
+  /** All pages, those with the largest errors of a promise first, each after those it depends on. */
+  streamingOrder(promise) {
     const frame = new Frame(this.#runtime, ERROR_BYTES + 4 * this.pages.length);
     try {
       const order = frame.at + ERROR_BYTES;
-      this.#check(this.#wasm.meshlode_streaming_order(this.#at, order, frame.at), frame.at);
+      this.#check(this.#wasm.meshlode_streaming_order(this.#at, promiseNumber(promise), order, frame.at), frame.at);
       return this.#uints(order, this.pages.length);
     } finally {
       frame.end();
@@ -584,9 +585,20 @@ class Asset {
     this.#table(name, (value) => (count = value));
     return count;
   }
-  #records(name, size, read) {
+  /** The addresses of the tables that hold errors, with those of a promise. */
+  #tablesOf(promise) {
+    const frame = new Frame(this.#runtime, 12 + ERROR_BYTES);
+    try {
+      const errorAt = frame.at + 12;
+      this.#check(this.#wasm.meshlode_tables_of(this.#at, promiseNumber(promise), frame.at, errorAt), errorAt);
+      const [meshes, groups] = this.#uints(frame.at, 2);
+      return { meshes, groups };
+    } finally {
+      frame.end();
+    }
+  }
+  #records(name, size, read, at = this.#table(name)) {
     const out = new Array(this.#count(name));
-    const at = this.#table(name);
     // A reader may ask the module for texts, and its memory may then move: the view is asked for each time.
     for (let i = 0; i < out.length; ++i) out[i] = read(this.#runtime.view(), at + size * i);
     return out;

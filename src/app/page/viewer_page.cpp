@@ -170,7 +170,7 @@ Result<std::vector<bool>> choose_pages(const run::Asset& asset, std::uint64_t ma
   };
   std::vector<bool> is_needed(asset.pages().size(), false);
   std::vector<std::uint32_t> order(asset.pages().size());
-  if (meshlode_streaming_order(opened, order.data(), &error) != MESHLODE_OK) {
+  if (meshlode_streaming_order(opened, MESHLODE_PROMISE_POSITION, order.data(), &error) != MESHLODE_OK) {
     return Error{ErrorCode::kInvalid, "", error.text};
   }
   // Members of a terminal group are drawn where nothing coarser is: their pages are always there, and what those need.

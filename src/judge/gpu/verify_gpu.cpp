@@ -149,7 +149,7 @@ struct Promise {
 
 Promise promise_of(const run::Asset& asset, const std::vector<SourceSurface>& source, const draw::GpuScene& scene) {
   Promise out;
-  out.kind = asset.chosen_promise();
+  out.kind = asset.promise();
   out.has_displacement = !source.empty();
   for (const format::MeshRecord& mesh : asset.meshes()) {
     if (mesh.cluster_count == 0) continue;

@@ -133,11 +133,11 @@ std::vector<SourceSurface> source_surfaces(const scene::Scene& scene, bool have_
 
 std::vector<PaintedSurface> painted_surfaces(const run::Asset& asset, const scene::Scene& scene) {
   std::vector<PaintedSurface> out;
-  if (asset.chosen_promise() == format::Promise::kPosition) return out;
+  if (asset.promise() == format::Promise::kPosition) return out;
   const std::size_t count = std::min(asset.meshes().size(), scene.meshes.size());
   out.reserve(count);
   for (std::size_t m = 0; m < count; ++m) {
-    const ProductScales scales = scales_of(asset, MeshId(m), asset.chosen_promise());
+    const ProductScales scales = scales_of(asset, MeshId(m), asset.promise());
     const ShadedSurface truth = painted_surface_of_source(scene.meshes[m]);
     out.push_back({scales, ProductSurface(truth, scales), rounding_of(truth, scales)});
   }

@@ -329,11 +329,12 @@ class Sweep {
   }
 
   /// Deviations are those of cuts by positions, pictures those of what the asset promises.
-  Status look_at(run::Asset& asset, const Group& group) {
-    Status done =
-        take(MeasurementKind::kAsset, group.key, 0, [&](Measurement& m) { return measure_content(asset, m); });
+  Status look_at(const run::Asset& opened, const Group& group) {
+    TRY(take(MeasurementKind::kAsset, group.key, 0, [&](Measurement& m) { return measure_content(opened, m); }));
     const std::string word = word_of(result_.knobs, result_.points[group.points.front()].point, "promise");
-    if (done) done = asset.choose(value_in(format::kPromiseNames, word).value_or(format::Promise::kPosition));
+    TRY_LET(promised, opened.with_promise(value_in(format::kPromiseNames, word).value_or(format::Promise::kPosition)));
+    const run::Asset& asset = *promised;
+    Status done = Ok{};
     for (std::size_t i = 0; done && i < group.points.size(); ++i) {
       const PointResult& one = result_.points[group.points[i]];
       const double pixels = number_of(result_.knobs, one.point, "pixel_error", 1.0);

@@ -132,13 +132,16 @@ const void* meshlode_blob_bytes(const meshlode_asset* asset, uint32_t blob, size
   return view.data();
 }
 
-meshlode_status meshlode_choose_promise(meshlode_asset* asset, uint32_t promise, meshlode_error* error) {
-  if (promise > MESHLODE_PROMISE_APPEARANCE) {
-    return fail(error, MESHLODE_USAGE, "promise: is not one of its enumerators");
-  }
+meshlode_status meshlode_tables_of(const meshlode_asset* asset, uint32_t promise, meshlode_promise_tables* tables,
+                                   meshlode_error* error) {
   return guard(error, [&] {
-    const meshlode::Status chosen = asset->asset.choose(static_cast<meshlode::format::Promise>(promise));
-    return chosen ? succeed(error) : fail(error, chosen.error());
+    const auto by = asset->assets.by(promise);
+    if (!by) return fail(error, by.error());
+    std::uint32_t count = 0;
+    tables->meshes = view<meshlode_mesh>((*by)->meshes(), &count);
+    tables->groups = view<meshlode_group>((*by)->groups(), &count);
+    tables->nodes = view<meshlode_node>((*by)->nodes(), &count);
+    return succeed(error);
   });
 }
 
@@ -156,13 +159,15 @@ meshlode_status meshlode_select_view(const meshlode_asset* asset, const meshlode
   return meshlode_select_frustum(asset, view, nullptr, pixel_error, items, capacity, count, error);
 }
 
-meshlode_status meshlode_select_uniform(const meshlode_asset* asset, uint32_t mesh, double max_error,
+meshlode_status meshlode_select_uniform(const meshlode_asset* asset, uint32_t mesh, uint32_t promise, double max_error,
                                         uint32_t* clusters, size_t capacity, size_t* count, double* stored_error,
                                         meshlode_error* error) {
   if (mesh >= asset->asset.meshes().size()) return fail(error, MESHLODE_USAGE, "mesh: does not exist");
   if (!(max_error >= 0.0)) return fail(error, MESHLODE_USAGE, "max_error is not a number >= 0");
   return guard(error, [&] {
-    const run::UniformCut cut = run::select_uniform(asset->asset, MeshId(mesh), max_error);
+    const auto by = asset->assets.by(promise);
+    if (!by) return fail(error, by.error());
+    const run::UniformCut cut = run::select_uniform(**by, MeshId(mesh), max_error);
     *count = cut.clusters.size();
     if (stored_error != nullptr) *stored_error = cut.stored_error;
     for (std::size_t i = 0; i < std::min(capacity, cut.clusters.size()); ++i) clusters[i] = cut.clusters[i].value;
@@ -183,9 +188,12 @@ const uint32_t* meshlode_page_dependencies(const meshlode_asset* asset, uint32_t
   return asset->asset.page_dependencies().subspan(record.first_dependency, record.dependency_count).data();
 }
 
-meshlode_status meshlode_streaming_order(const meshlode_asset* asset, uint32_t* pages, meshlode_error* error) {
+meshlode_status meshlode_streaming_order(const meshlode_asset* asset, uint32_t promise, uint32_t* pages,
+                                         meshlode_error* error) {
   return guard(error, [&] {
-    const std::vector<std::uint32_t> order = run::streaming_order(asset->asset);
+    const auto by = asset->assets.by(promise);
+    if (!by) return fail(error, by.error());
+    const std::vector<std::uint32_t> order = run::streaming_order(**by);
     std::copy(order.begin(), order.end(), pages);
     return succeed(error);
   });

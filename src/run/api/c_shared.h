@@ -13,11 +13,12 @@
 #include <string>
 #include <utility>
 
+#include "run/api/by_promise.h"
 #include "run/api/camera_of_view.h"
-#include "run/read/asset.h"
 
 struct meshlode_asset {
-  meshlode::run::Asset asset;
+  meshlode::run::AssetByPromise assets;
+  const meshlode::run::Asset& asset = assets.by_position();
 };
 
 namespace meshlode::run::c {
@@ -75,7 +76,7 @@ meshlode_status guard(meshlode_error* error, const Body& body) {
 
 inline meshlode_status take(Result<run::Asset> asset, meshlode_asset** out, meshlode_error* error) {
   if (!asset) return fail(error, asset.error());
-  *out = new meshlode_asset{std::move(*asset)};
+  *out = new meshlode_asset{run::AssetByPromise(std::move(*asset))};
   return succeed(error);
 }
 

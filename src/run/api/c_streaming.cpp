@@ -12,7 +12,7 @@
 #include "run/unpack/unpack.h"
 
 struct meshlode_selector {
-  const meshlode::run::Asset* asset;
+  const meshlode::run::AssetByPromise* assets;
   meshlode::run::ResidentSelector selector;
 };
 
@@ -139,8 +139,10 @@ meshlode_status meshlode_select_frustum(const meshlode_asset* asset, const meshl
   if (const meshlode_status status = read_view(*view, pixel_error, camera, error); status != MESHLODE_OK) return status;
   const auto planes = frustum != nullptr ? std::optional(planes_of_c(*frustum)) : std::nullopt;
   return guard(error, [&] {
+    const auto by = asset->assets.by(view->promise);
+    if (!by) return fail(error, by.error());
     const std::vector<run::ClusterInstance> drawn =
-        run::select_bvh(asset->asset, camera, pixel_error, {}, planes ? &*planes : nullptr);
+        run::select_bvh(**by, camera, pixel_error, {}, planes ? &*planes : nullptr);
     *count = drawn.size();
     for (std::size_t i = 0; i < std::min(capacity, drawn.size()); ++i) {
       items[i] = {drawn[i].instance.value, drawn[i].cluster.value};
@@ -152,7 +154,7 @@ meshlode_status meshlode_select_frustum(const meshlode_asset* asset, const meshl
 meshlode_status meshlode_create_selector(const meshlode_asset* asset, meshlode_selector** selector,
                                          meshlode_error* error) {
   return guard(error, [&] {
-    *selector = new meshlode_selector{&asset->asset, run::ResidentSelector(run::tables_of(asset->asset))};
+    *selector = new meshlode_selector{&asset->assets, run::ResidentSelector(run::tables_of(asset->asset))};
     return succeed(error);
   });
 }
@@ -168,13 +170,15 @@ meshlode_status meshlode_select_resident(meshlode_selector* selector, const mesh
   run::Camera camera;
   if (const meshlode_status status = read_view(*view, pixel_error, camera, error); status != MESHLODE_OK) return status;
   const auto planes = frustum != nullptr ? std::optional(planes_of_c(*frustum)) : std::nullopt;
-  const run::ResidentQuery query{camera,
-                                 pixel_error,
-                                 {resident, resident != nullptr ? (selector->asset->pages().size() + 31) / 32 : 0},
-                                 planes ? &*planes : nullptr};
-  *count = selector->selector.select(run::tables_of(*selector->asset), query,
-                                     {reinterpret_cast<run::ClusterInstance*>(items), capacity});
-  return *count <= capacity ? succeed(error) : fail(error, MESHLODE_TOO_SMALL, "more items than capacity");
+  return guard(error, [&] {
+    const auto by = selector->assets->by(view->promise);
+    if (!by) return fail(error, by.error());
+    const std::size_t words = resident != nullptr ? ((*by)->pages().size() + 31) / 32 : 0;
+    const run::ResidentQuery query{camera, pixel_error, {resident, words}, planes ? &*planes : nullptr};
+    *count = selector->selector.select(run::tables_of(**by), query,
+                                       {reinterpret_cast<run::ClusterInstance*>(items), capacity});
+    return *count <= capacity ? succeed(error) : fail(error, MESHLODE_TOO_SMALL, "more items than capacity");
+  });
 }
 
 const meshlode_page_request* meshlode_page_requests(const meshlode_selector* selector, size_t* count) {

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "run/api/by_promise.h"
 #include "run/select/frustum.h"
 #include "run/select/select.h"
 
@@ -32,6 +33,7 @@ ViewFault fault_of_view(const View& view) {
   } else if (!(view.fovy_radians > 0.0 && view.fovy_radians < kPi)) {
     return {"fovy_radians", "is not between 0 and pi"};
   }
+  if (static_cast<std::uint32_t>(view.promise) >= kPromiseCount) return {"promise", kPromiseFault};
   return {};
 }
 

@@ -10,6 +10,7 @@
 
 #include "base/try.h"
 #include "format/page_hint.h"
+#include "run/api/by_promise.h"
 #include "run/api/camera_of_view.h"
 #include "run/decode/decode.h"
 #include "run/read/asset.h"
@@ -88,11 +89,16 @@ std::uint32_t PageBytes::page() const {
 }
 
 struct AssetFile::State {
-  run::Asset asset;
+  run::AssetByPromise assets;
+  const run::Asset& asset = assets.by_position();
 
+  explicit State(run::Asset opened) : assets(std::move(opened)) {}
   static Result<AssetFile> wrap(Result<run::Asset> asset) {
     if (!asset) return asset.error();
-    return AssetFile(std::make_unique<State>(State{std::move(*asset)}));
+    return AssetFile(std::make_unique<State>(std::move(*asset)));
+  }
+  [[nodiscard]] Result<const run::Asset*> by(format::Promise promise) const {
+    return assets.by(static_cast<std::uint32_t>(promise));
   }
   /// Decodes to the integer form of the room `decode`.
   [[nodiscard]] Status decode(const PageBytes::State& page, std::uint32_t cluster, run::DecodedCluster& out) const {
@@ -107,7 +113,7 @@ struct AssetFile::State {
 };
 
 struct ResidentSelector::State {
-  const run::Asset* asset;
+  const run::AssetByPromise* assets;
   run::ResidentSelector selector;
 };
 
@@ -119,9 +125,10 @@ ResidentSelector::~ResidentSelector() = default;
 Status ResidentSelector::select(const View& view, double pixel_error, std::span<const std::uint32_t> resident,
                                 std::vector<DrawItem>& items, const Frustum* frustum) {
   TRY_LET(camera, make_camera(view, pixel_error));
+  TRY_LET(asset, state_->assets->by(static_cast<std::uint32_t>(view.promise)));
   const auto planes = planes_of(frustum);
   const run::ResidentQuery query{*camera, pixel_error, resident, planes ? &*planes : nullptr};
-  const run::SelectTables tables = run::tables_of(*state_->asset);
+  const run::SelectTables tables = run::tables_of(**asset);
   items.resize(items.capacity());
   for (;;) {
     const std::size_t count =
@@ -224,17 +231,18 @@ std::string_view AssetFile::scene_json() const {
   return state_->asset.scene_json();
 }
 
-Status AssetFile::choose_promise(format::Promise promise) {
-  if (promise > format::Promise::kAppearance) return usage("promise", "is not one of its enumerators");
-  return state_->asset.choose(promise);
+Result<PromiseTables> AssetFile::tables_of(format::Promise promise) const {
+  TRY_LET(asset, state_->by(promise));
+  return PromiseTables{(*asset)->meshes(), (*asset)->groups(), (*asset)->nodes()};
 }
 
 Result<std::vector<DrawItem>> AssetFile::select_view(const View& view, double pixel_error,
                                                      const Frustum* frustum) const {
   TRY_LET(camera, make_camera(view, pixel_error));
+  TRY_LET(asset, state_->by(view.promise));
   const auto planes = planes_of(frustum);
   const std::vector<run::ClusterInstance> drawn =
-      run::select_bvh(state_->asset, *camera, pixel_error, {}, planes ? &*planes : nullptr);
+      run::select_bvh(**asset, *camera, pixel_error, {}, planes ? &*planes : nullptr);
   std::vector<DrawItem> items;
   items.reserve(drawn.size());
   for (const run::ClusterInstance& d : drawn) items.push_back({d.instance.value, d.cluster.value});
@@ -242,15 +250,15 @@ Result<std::vector<DrawItem>> AssetFile::select_view(const View& view, double pi
 }
 
 ResidentSelector AssetFile::resident_selector() const {
-  const run::Asset& asset = state_->asset;
   return ResidentSelector(std::make_unique<ResidentSelector::State>(
-      ResidentSelector::State{&asset, run::ResidentSelector(run::tables_of(asset))}));
+      ResidentSelector::State{&state_->assets, run::ResidentSelector(run::tables_of(state_->asset))}));
 }
 
-Result<UniformCut> AssetFile::select_uniform(std::uint32_t mesh, double max_error) const {
+Result<UniformCut> AssetFile::select_uniform(std::uint32_t mesh, double max_error, format::Promise promise) const {
   if (mesh >= state_->asset.meshes().size()) return usage("mesh", "does not exist");
   if (!(max_error >= 0.0)) return usage("max_error", "is not a number >= 0");
-  const run::UniformCut cut = run::select_uniform(state_->asset, MeshId(mesh), max_error);
+  TRY_LET(asset, state_->by(promise));
+  const run::UniformCut cut = run::select_uniform(**asset, MeshId(mesh), max_error);
   UniformCut result;
   result.stored_error = cut.stored_error;
   result.clusters.reserve(cut.clusters.size());
@@ -258,8 +266,9 @@ Result<UniformCut> AssetFile::select_uniform(std::uint32_t mesh, double max_erro
   return result;
 }
 
-std::vector<std::uint32_t> AssetFile::streaming_order() const {
-  return run::streaming_order(state_->asset);
+Result<std::vector<std::uint32_t>> AssetFile::streaming_order(format::Promise promise) const {
+  TRY_LET(asset, state_->by(promise));
+  return run::streaming_order(**asset);
 }
 
 format::PageHintRecord AssetFile::page_hint(std::uint32_t page) const {

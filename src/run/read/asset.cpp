@@ -35,7 +35,7 @@ Result<Asset> Asset::open(const std::filesystem::path& path, std::uint64_t max_d
   Asset asset;
   asset.max_decoded_ = max_decoded;
   asset.bytes_ = file->bytes();
-  asset.storage_ = std::move(*file);
+  asset.owned_->storage = std::move(*file);
   if (Status status = asset.index(); !status) {
     Error error = status.error();
     error.where = error.where.empty() ? path.string() : path.string() + ": " + error.where;
@@ -54,7 +54,7 @@ Result<Asset> Asset::from_bytes(std::span<const std::uint8_t> bytes) {
 Result<Asset> Asset::from_vector(std::vector<std::uint8_t> bytes) {
   Asset asset;
   asset.bytes_ = bytes;
-  asset.storage_ = std::move(bytes);  // moving a vector keeps its buffer, so the view stays valid
+  asset.owned_->storage = std::move(bytes);  // moving a vector keeps its buffer, so the view stays valid
   TRY(asset.index());
   return asset;
 }
@@ -69,7 +69,7 @@ Result<Asset> Asset::from_head(std::span<const std::uint8_t> bytes, std::uint64_
 Result<Asset> Asset::from_head(std::vector<std::uint8_t> bytes, std::uint64_t file_bytes) {
   Asset asset;
   asset.bytes_ = bytes;
-  asset.storage_ = std::move(bytes);
+  asset.owned_->storage = std::move(bytes);
   TRY(asset.index_head(file_bytes));
   return asset;
 }
@@ -87,7 +87,7 @@ Status Asset::index_head(std::uint64_t file_bytes) {
 }
 
 std::optional<FileId> Asset::file_id() const {
-  const auto* file = std::get_if<MappedFile>(&storage_);
+  const auto* file = std::get_if<MappedFile>(&owned_->storage);
   return file != nullptr ? std::optional(file->id()) : std::nullopt;
 }
 
@@ -103,9 +103,9 @@ std::span<const std::uint8_t> Asset::stored_page(PageId page) const {
 std::span<const std::uint8_t> Asset::section_bytes(const format::SectionEntry& entry) const {
   if (entry.bytes == 0) return {};               // at the offset of the section behind it
   if (entry.offset >= bytes_.size()) return {};  // pages and images, which a head is without
-  const auto decoded = decoded_.find(entry.offset);
-  return decoded != decoded_.end() ? std::span<const std::uint8_t>(decoded->second)
-                                   : bytes_.subspan(entry.offset, entry.bytes);
+  const auto decoded = owned_->decoded.find(entry.offset);
+  return decoded != owned_->decoded.end() ? std::span<const std::uint8_t>(decoded->second)
+                                          : bytes_.subspan(entry.offset, entry.bytes);
 }
 
 Status Asset::index(std::uint64_t file_bytes) {
@@ -132,7 +132,7 @@ Status Asset::index(std::uint64_t file_bytes) {
       return Error{ErrorCode::kInvalid, "section " + section_tag(entry->id) + ", field codec",
                    "the stored bytes do not decode"};
     }
-    decoded_.emplace(entry->offset, std::move(decoded));
+    owned_->decoded.emplace(entry->offset, std::move(decoded));
   }
   const auto bytes_of = [&](format::SectionId id) { return section_bytes(sections->entry(id)); };
   RawTables tables;
@@ -175,12 +175,13 @@ Status Asset::index(std::uint64_t file_bytes) {
 
   header_ = sections->header;
   sections_ = sections->entries;
-  stored_meshes_ = meshes_ = tables.meshes;
+  meshes_ = tables.meshes;
   materials_ = tables.materials;
   instances_ = tables.instances;
-  stored_groups_ = groups_ = tables.groups;
+  groups_ = tables.groups;
   clusters_ = tables.clusters;
-  stored_nodes_ = nodes_ = tables.nodes;
+  nodes_ = tables.nodes;
+  stored_ = {meshes_, groups_, nodes_};
   pages_ = tables.pages;
   page_dependencies_ = tables.page_dependencies;
   blobs_ = tables.blobs;

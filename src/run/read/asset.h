@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -21,6 +22,8 @@
 
 namespace meshlode::run {
 
+/// Immutable. What it holds is shared by with_promise(), so that an asset by another promise costs its own errors
+/// alone.
 class Asset {
  public:
   /// Maps the file. Errors: kIo; kInvalid with the place in the file; kUnsupported for a newer version or an unknown
@@ -60,14 +63,15 @@ class Asset {
   [[nodiscard]] std::span<const format::PromiseGroupRecord> promise_errors() const { return promise_errors_; }
   /// One a page, of the errors of positions; empty where the file has none. Nothing holds them against the groups here.
   [[nodiscard]] std::span<const format::PageHintRecord> page_hints() const { return page_hints_; }
-  /// Whether choose() will do: positions always, else where the asset was built to promise it or more.
+  /// Whether with_promise() will do: positions always, else where the asset was built to promise it or more.
   [[nodiscard]] bool has_promise(format::Promise promise) const;
-  /// From here on `error` of groups() and nodes(), and `level0_deviation` of meshes(), are those of this promise, so
-  /// that whoever selects by them keeps it (docs/reference/selection.md). Views taken before keep the promise that they
-  /// had, until choose() is called again. What the file holds stays as it is: section_bytes(), bytes(), content hash.
-  /// Error: kUnsupported where the asset does not promise it, with how to build one that does. Not thread-safe.
-  [[nodiscard]] Status choose(format::Promise promise);
-  [[nodiscard]] format::Promise chosen_promise() const { return chosen_; }
+  /// The same asset, whose `error` of groups() and nodes(), and `level0_deviation` of meshes(), are those of this
+  /// promise, so that whoever selects by them keeps it (docs/reference/selection.md). What the file holds is the same:
+  /// section_bytes(), bytes(), content hash. It may outlive this one.
+  /// Error: kUnsupported where the asset does not promise it, with how to build one that does.
+  [[nodiscard]] Result<Asset> with_promise(format::Promise promise) const;
+  /// That of with_promise(); kPosition of an asset as it was opened.
+  [[nodiscard]] format::Promise promise() const { return promise_; }
   [[nodiscard]] std::string_view meta_json() const { return meta_; }
   [[nodiscard]] std::string_view scene_json() const { return scene_; }
   [[nodiscard]] std::string_view strings() const { return strings_; }  ///< what StringRef points into
@@ -81,17 +85,33 @@ class Asset {
   [[nodiscard]] std::span<const std::uint8_t> section_bytes(const format::SectionEntry& entry) const;
 
  private:
+  /// What the views point into; the caller's bytes have no storage here.
+  struct Owned {
+    std::variant<std::monostate, MappedFile, std::vector<std::uint8_t>> storage;
+    /// Of sections that are stored by columns, by their offset in the file; the others are viewed where they lie.
+    std::map<std::uint64_t, std::vector<std::uint8_t>> decoded;
+  };
+  /// The tables that hold errors, as the file has them, and those of a promise besides positions.
+  struct ErrorViews {
+    std::span<const format::MeshRecord> meshes;
+    std::span<const format::GroupRecord> groups;
+    std::span<const format::NodeRecord> nodes;
+  };
+  struct PromiseErrors {
+    std::vector<format::MeshRecord> meshes;
+    std::vector<format::GroupRecord> groups;
+    std::vector<format::NodeRecord> nodes;
+  };
+
   Asset() = default;
   [[nodiscard]] Status index(std::uint64_t file_bytes);
   [[nodiscard]] Status index() { return index(bytes_.size()); }
   [[nodiscard]] Status index_head(std::uint64_t file_bytes);
 
-  std::variant<std::monostate, MappedFile, std::vector<std::uint8_t>> storage_;
+  std::shared_ptr<Owned> owned_ = std::make_shared<Owned>();  ///< written while it is opened alone
   std::span<const std::uint8_t> bytes_;
   bool has_body_ = true;
   std::uint64_t max_decoded_ = kDefaultMaxDecoded;
-  /// Of sections that are stored by columns, by their offset in the file; the others are viewed where they lie.
-  std::map<std::uint64_t, std::vector<std::uint8_t>> decoded_;
   const format::FileHeader* header_ = nullptr;
   std::span<const format::SectionEntry> sections_;
   std::span<const format::MeshRecord> meshes_;
@@ -107,15 +127,9 @@ class Asset {
   std::span<const format::PromiseGroupRecord> promise_errors_;
   std::span<const format::PageHintRecord> page_hints_;
   std::string_view meta_, scene_, strings_;
-  format::Promise chosen_ = format::Promise::kPosition;
-  // Of the chosen promise, where it is not that of positions.
-  std::vector<format::MeshRecord> chosen_meshes_;
-  std::vector<format::GroupRecord> chosen_groups_;
-  std::vector<format::NodeRecord> chosen_nodes_;
-  // As the file has them.
-  std::span<const format::MeshRecord> stored_meshes_;
-  std::span<const format::GroupRecord> stored_groups_;
-  std::span<const format::NodeRecord> stored_nodes_;
+  format::Promise promise_ = format::Promise::kPosition;
+  ErrorViews stored_;
+  std::shared_ptr<const PromiseErrors> errors_;  ///< null: meshes_, groups_ and nodes_ are stored_
 };
 
 }  // namespace meshlode::run

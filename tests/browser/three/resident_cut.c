@@ -31,7 +31,7 @@ int main(int argc, char** argv) {
   if (resident == NULL || items == NULL) return 2;
   double first;
   while (scanf("%lf", &first) == 1) {
-    meshlode_view view = {{0}, 0, 0, 0, 0, 0};
+    meshlode_view view = {{0}, 0, 0, 0, 0, 0, 0};
     meshlode_frustum frustum;
     view.eye[0] = first;
     view.eye[1] = next();

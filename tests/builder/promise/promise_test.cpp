@@ -164,9 +164,11 @@ double farthest(const std::vector<Patch5>& from, const std::vector<Patch5>& to, 
 void expect_texels_kept(const scene::Primitive& shape, format::ErrorTier tier = format::ErrorTier::kMeasured) {
   // Of what is proven only the floats are left that UVs are decoded to.
   const double rounding = tier == format::ErrorTier::kCertified ? 1.0 + 1e-6 : 1.001;
-  run::Asset asset = opened(built(textured(shape), format::Promise::kTexels, tier));
+  const auto promised =
+      opened(built(textured(shape), format::Promise::kTexels, tier)).with_promise(format::Promise::kTexels);
+  ASSERT_TRUE(promised);
+  const run::Asset& asset = *promised;
   ASSERT_EQ(asset.promises().size(), 1U);
-  ASSERT_TRUE(asset.choose(format::Promise::kTexels));
   const std::vector<Patch5> source = patches_of_source(shape, asset.promises()[0], asset.meshes()[0]);
   std::vector<float> errors;
   for (const format::GroupRecord& group : asset.groups()) {
@@ -382,13 +384,16 @@ TEST(Promise, NormalsThatTurnAreMoreThanPositions) {
   }
 }
 
-TEST(Promise, ChosenErrorsNestOverNodesAndGroups) {
-  run::Asset asset = opened(built(textured(painted_sheet(40, 0.1, [](double x, double y) { return Vec2d(x * x, y); })),
-                                  format::Promise::kAppearance));
-  const std::vector<format::GroupRecord> before(asset.groups().begin(), asset.groups().end());
+TEST(Promise, ErrorsOfEachNestOverNodesAndGroups) {
+  const run::Asset plain =
+      opened(built(textured(painted_sheet(40, 0.1, [](double x, double y) { return Vec2d(x * x, y); })),
+                   format::Promise::kAppearance));
+  const std::vector<format::GroupRecord> before(plain.groups().begin(), plain.groups().end());
   for (const format::Promise promise : {format::Promise::kAppearance, format::Promise::kTexels}) {
-    ASSERT_TRUE(asset.choose(promise));
-    EXPECT_EQ(asset.chosen_promise(), promise);
+    const auto promised = plain.with_promise(promise);
+    ASSERT_TRUE(promised);
+    const run::Asset& asset = *promised;
+    EXPECT_EQ(asset.promise(), promise);
     for (const format::NodeRecord& node : asset.nodes()) {
       if (node.child_count == 0) {
         EXPECT_EQ(node.error, asset.groups()[node.first].error);
@@ -409,21 +414,20 @@ TEST(Promise, ChosenErrorsNestOverNodesAndGroups) {
       EXPECT_EQ(run::select_bvh(asset, camera, pixels), run::select_flat(asset, camera, pixels));
     }
   }
-  ASSERT_TRUE(asset.choose(format::Promise::kPosition));
-  for (std::size_t g = 0; g < before.size(); ++g) EXPECT_EQ(asset.groups()[g].error, before[g].error);
+  for (std::size_t g = 0; g < before.size(); ++g) EXPECT_EQ(plain.groups()[g].error, before[g].error);
 }
 
 TEST(Promise, WhatWasNotBuiltIsRefusedWithTheRemedy) {
   const scene::Scene scene = textured(painted_sheet(16, 0.1, [](double x, double y) { return Vec2d(x, y); }));
-  run::Asset plain = opened(built(scene, format::Promise::kPosition));
+  const run::Asset plain = opened(built(scene, format::Promise::kPosition));
   EXPECT_TRUE(plain.promises().empty());
-  run::Asset texels = opened(built(scene, format::Promise::kTexels));
-  EXPECT_TRUE(texels.choose(format::Promise::kTexels));
-  for (run::Asset* asset : {&plain, &texels}) {
-    const Status chosen = asset->choose(format::Promise::kAppearance);
-    ASSERT_FALSE(chosen);
-    EXPECT_EQ(chosen.error().code, ErrorCode::kUnsupported);
-    EXPECT_NE(chosen.error().message().find("--promise appearance"), std::string::npos);
+  const run::Asset texels = opened(built(scene, format::Promise::kTexels));
+  EXPECT_TRUE(texels.with_promise(format::Promise::kTexels));
+  for (const run::Asset* asset : {&plain, &texels}) {
+    const auto promised = asset->with_promise(format::Promise::kAppearance);
+    ASSERT_FALSE(promised);
+    EXPECT_EQ(promised.error().code, ErrorCode::kUnsupported);
+    EXPECT_NE(promised.error().message().find("--promise appearance"), std::string::npos);
   }
 }
 

@@ -18,7 +18,7 @@ int main(int argc, char** argv) {
     puts(error.text);
     return 1;
   }
-  if (meshlode_select_uniform(asset, 0, 0.0, &cluster, 1, &count, NULL, &error)) return 1;
+  if (meshlode_select_uniform(asset, 0, MESHLODE_PROMISE_POSITION, 0.0, &cluster, 1, &count, NULL, &error)) return 1;
   bytes.page = meshlode_page_of(asset, cluster);
   if (meshlode_load_page(asset, bytes.page, page, sizeof page, &error)) return 1;
   if (meshlode_decode_floats(asset, bytes, cluster, &floats, &error)) return 1;

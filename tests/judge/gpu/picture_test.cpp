@@ -95,8 +95,10 @@ TEST(Picture, AMissingClusterIsAHole) {
 /// far as the picture swam.
 TEST(Picture, ATextureThatSwamExceedsThePromiseOfTexels) {
   const Built ball = build_promised(painted_scene(), format::Promise::kTexels);
-  auto asset = run::Asset::from_vector(ball.bytes);
-  ASSERT_TRUE(asset && asset->choose(format::Promise::kTexels));
+  const auto opened = run::Asset::from_vector(ball.bytes);
+  ASSERT_TRUE(opened);
+  const auto asset = opened->with_promise(format::Promise::kTexels);
+  ASSERT_TRUE(asset);
   run::Camera camera = adversarial_cameras(*asset, 160, 120)[0].camera;
   camera.is_orthographic = true;
   camera.ortho_height = 3.0;

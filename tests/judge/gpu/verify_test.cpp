@@ -78,8 +78,10 @@ TEST_F(VerifyGpu, EachPromiseIsJudgedByWhatItSpeaksOf) {
   options.sizes = {{96, 72}};
   for (const auto promise : {format::Promise::kPosition, format::Promise::kTexels, format::Promise::kAppearance}) {
     SCOPED_TRACE(static_cast<int>(promise));
-    auto asset = run::Asset::from_vector(ball.bytes);
-    ASSERT_TRUE(asset && asset->choose(promise));
+    const auto opened = run::Asset::from_vector(ball.bytes);
+    ASSERT_TRUE(opened);
+    const auto asset = opened->with_promise(promise);
+    ASSERT_TRUE(asset);
     const auto judge = [&](const scene::Scene& scene) {
       const auto report = verify_on_gpu(*asset, scene, options);
       EXPECT_TRUE(report) << report.error().message();

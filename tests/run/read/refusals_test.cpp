@@ -326,19 +326,25 @@ TEST(Read, RefusesBrokenGroups) {
   expect_refused(bytes, "section GRUP, record 0, field level");
 }
 
-TEST(Read, PromisesAreChosenOneAfterAnother) {
+TEST(Read, AnAssetByAPromiseOutlivesTheOneThatItIsMadeOf) {
   auto asset = Asset::from_vector(test::promised_asset_bytes());
   ASSERT_TRUE(asset) << asset.error().message();
   ASSERT_EQ(asset->promises().size(), asset->meshes().size());
   ASSERT_EQ(asset->promise_errors().size(), asset->groups().size());
-  ASSERT_TRUE(asset->choose(format::Promise::kAppearance));
-  Asset moved = std::move(*asset);  // with what was chosen
-  EXPECT_EQ(moved.chosen_promise(), format::Promise::kAppearance);
+  auto promised = asset->with_promise(format::Promise::kAppearance);
+  asset = Error{};
+  ASSERT_TRUE(promised);
+  const Asset moved = std::move(*promised);
+  EXPECT_EQ(moved.promise(), format::Promise::kAppearance);
   for (std::size_t g = 0; g < moved.groups().size(); ++g) {
     EXPECT_EQ(moved.groups()[g].error, moved.promise_errors()[g].appearance_error);
   }
-  ASSERT_TRUE(moved.choose(format::Promise::kPosition));
-  EXPECT_EQ(moved.groups().size(), sound_asset().groups().size());
+  const auto back = moved.with_promise(format::Promise::kPosition);
+  ASSERT_TRUE(back);
+  ASSERT_EQ(back->groups().size(), sound_asset().groups().size());
+  for (std::size_t g = 0; g < back->groups().size(); ++g) {
+    EXPECT_EQ(back->groups()[g].error, sound_asset().groups()[g].error);
+  }
 }
 
 TEST(Read, RefusesBrokenPromises) {

@@ -15,6 +15,7 @@ class Streamer {
   #runtime;
   #asset = null;
   #selector;
+  #promise;
   #isRaw; // pages are sent as they are decoded on a GPU, and not as floats
   #poolBytes;
   #slotBytes; // of a cluster; of a page, where those are raw
@@ -45,7 +46,9 @@ class Streamer {
     // A section table beyond the first bytes, which no writer makes.
     if (!need.isKnown) head = await this.#source.read(0, (need = inPlace('head', () => runtime.headBytes(head, fileBytes))).bytes);
     const asset = inPlace('head', () => runtime.openHead(head, fileBytes));
-    if (options.promise) inPlace('promise', () => asset.choosePromise(options.promise));
+    const { promise } = options;
+    inPlace('promise', () => asset.checkPromise(promise));
+    this.#promise = promise;
     this.#asset = asset;
     this.#selector = asset.createSelector();
     this.#resident = new Uint32Array(Math.ceil(asset.pages.length / 32));
@@ -56,7 +59,7 @@ class Streamer {
     const { meshes, materials, instances, pages } = asset;
     if (this.#isRaw) {
       this.#slotBytes = pages.reduce((most, { bytes }) => Math.max(most, bytes), 0);
-      const tables = { groups: asset.tableWords('groups'), clusters: asset.tableWords('clusters') };
+      const tables = { groups: asset.tableWords('groups', promise), clusters: asset.tableWords('clusters') };
       const reaches = meshes.map((_, mesh) => asset.reachOf(mesh));
       postMessage({ type: 'opened', meshes, materials, instances, pages, ...tables, reaches, slot, slotBytes: this.#slotBytes });
       return this.#schedule();
@@ -92,7 +95,7 @@ class Streamer {
 
   #choose() {
     const { view, frustum, pixelError, id } = this.#query;
-    const select = () => this.#selector.select(view, pixelError, this.#resident, frustum);
+    const select = () => this.#selector.select({ ...view, promise: this.#promise }, pixelError, this.#resident, frustum);
     const start = performance.now();
     let drawn = this.#drawn;
     try {
