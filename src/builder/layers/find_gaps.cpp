@@ -16,8 +16,9 @@ namespace meshlode::builder {
 
 namespace {
 
-/// Of a mesh's diagonal. At an error of a wider gap the whole mesh is fifty pixels wide. With 1/128 FlightHelmet shows
-/// another surface at 0.054% of its pixels (errors of 3 to 24 pixels, three seeds of METIS), with this at 0.011%.
+/// Of a mesh's diagonal. At an error of a wider gap the whole mesh is fifty pixels wide. FlightHelmet shows another
+/// surface at 0.026% of its pixels (docs/log/layers.md); a reach of 1/128 missed gaps and had five times the pixels of
+/// this one when it was chosen.
 constexpr double kWidestReach = 0.02;
 /// Of the reach. What is nearer than the grid's step lies in one plane.
 constexpr double kLeastGap = 2e-3;

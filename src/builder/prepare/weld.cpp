@@ -148,7 +148,7 @@ VertexIds weld_vertices(const Corners& corners, std::span<const Vec3i> points, c
 /// A triangle in canonical form: rotated so that its smallest exact vertex comes first; sorted by these fields.
 struct CanonicalTriangle {
   std::array<std::uint32_t, 3> exact;  ///< ids of (exact position, attributes): what tells duplicates apart
-  std::uint32_t material;              ///< and gap: duplicates differ in it at most, and the narrowest comes first
+  std::uint32_t material;              ///< and gap; among duplicates that with the narrowest gap is sorted first
   bool operator<(const CanonicalTriangle& other) const {
     const auto key = [](const CanonicalTriangle& t) {
       return std::tuple(t.exact, material_of(t.material), 255U - gap_pair_of(t.material).byte());

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What keeps layers in order: of two surfaces with a gap between them each may move towards the other by half of the
 // gap, and away from it as far as errors allow. So the lower one is simplified from below and the upper one from above,
-// as a progressive hull is (Sander, Gu, Gortler, Hoppe and Snyder 2000), and neither needs more triangles the narrower
-// the gap is: an error may be many times the gap.
+// as a progressive hull is (Sander, Gu, Gortler, Hoppe and Snyder 2000). A narrow gap needs no more triangles than a
+// wide one: an error may be many times the gap.
 #pragma once
 
 #include <array>
