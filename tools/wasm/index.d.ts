@@ -218,7 +218,7 @@ export interface Asset {
   /** The most vertices and triangles of any cluster. */
   largestCluster(): { vertices: number; triangles: number };
   pageDependencies(page: number): Uint32Array;
-  streamingOrder(): Uint32Array;
+  streamingOrder(promise?: PromiseKind): Uint32Array;
   /**
    * Ranges to read before the first picture, ascending: the pages of terminal groups of meshes with instances. Pages with at most
    * `maxGap` bytes between them share a range, and neighbours always do.

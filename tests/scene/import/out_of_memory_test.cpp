@@ -217,6 +217,11 @@ TEST(Memory, OfADocumentIsAtMost16BytesPerByteOfText) {
     EXPECT_LE(bytes_per_byte(text, [&] { EXPECT_TRUE(scene::import_scene(path, {})); }), most_imported) << value;
   }
   std::filesystem::remove(path);
+  // What is no JSON takes no more, whatever its commas announce.
+  for (const char* start : {"[", "{", "{\"a\":[", "[0", "{\"a\":0"}) {
+    const std::string text = start + std::string(2'000'000, ',');
+    EXPECT_LE(bytes_per_byte(text, [&] { EXPECT_FALSE(scene::parse_json(text)); }), 16.0) << start;
+  }
 }
 
 TEST(OutOfMemory, ACopyOfADocumentIsUndone) {

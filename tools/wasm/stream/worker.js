@@ -46,7 +46,7 @@ class Streamer {
     // A section table beyond the first bytes, which no writer makes.
     if (!need.isKnown) head = await this.#source.read(0, (need = inPlace('head', () => runtime.headBytes(head, fileBytes))).bytes);
     const asset = inPlace('head', () => runtime.openHead(head, fileBytes));
-    const { promise } = options;
+    const promise = options.promise || undefined;
     inPlace('promise', () => asset.checkPromise(promise));
     this.#promise = promise;
     this.#asset = asset;
