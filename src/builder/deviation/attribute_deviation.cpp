@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <tuple>
 #include <vector>
 
 #include "base/parallel.h"
@@ -25,23 +27,32 @@ double arc_sine_degrees(double x) {
   return sum * kDegrees;
 }
 
-struct Weights {
-  double a = 0.0, b = 0.0, c = 0.0;
-};
+/// Barycentric coordinates.
+using Weights = std::array<double, 3>;
 
-/// Barycentric coordinates of the triangle's point nearest to the foot of `p` on its plane: clamped and renormalized,
-/// which is exact inside and near enough on the edge where the surface ends.
+/// Barycentric coordinates of the triangle's point nearest to `p`; without area its first corner.
 Weights weights_of(const Vec3d& p, const TriangleCorners& corners) {
   const Vec3d ab = corners[1] - corners[0], ac = corners[2] - corners[0], ap = p - corners[0];
   const Vec3d n = glm::cross(ab, ac);
   const double nn = glm::dot(n, n);
   if (!(nn > 0.0)) return {1.0, 0.0, 0.0};
-  Weights w;
-  w.c = std::max(0.0, glm::dot(glm::cross(ab, ap), n) / nn);
-  w.b = std::max(0.0, glm::dot(glm::cross(ap, ac), n) / nn);
-  w.a = std::max(0.0, 1.0 - w.b - w.c);
-  const double sum = w.a + w.b + w.c;
-  return {w.a / sum, w.b / sum, w.c / sum};
+  const double c = glm::dot(glm::cross(ab, ap), n) / nn, b = glm::dot(glm::cross(ap, ac), n) / nn;
+  if (b >= 0.0 && c >= 0.0 && b + c <= 1.0) return {1.0 - b - c, b, c};
+  Weights best{};
+  double least2 = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t next = (k + 1) % 3;
+    const Vec3d edge = corners[next] - corners[k], from = p - corners[k];
+    const double length2 = glm::dot(edge, edge);
+    const double t = length2 > 0.0 ? std::clamp(glm::dot(from, edge) / length2, 0.0, 1.0) : 0.0;
+    const Vec3d away = from - edge * t;
+    if (!(glm::dot(away, away) < least2)) continue;
+    least2 = glm::dot(away, away);
+    best = {};
+    best[k] = 1.0 - t;
+    best[next] = t;
+  }
+  return best;
 }
 
 /// The attributes of one triangle at barycentric coordinates.
@@ -52,8 +63,7 @@ class Interpolator {
     for (std::size_t k = 0; k < 3; ++k) at_[k] = surface.wedge_attributes.data() + t[k] * stride;
   }
   [[nodiscard]] double value(std::size_t j, const Weights& w) const {
-    return w.a * static_cast<double>(at_[0][j]) + w.b * static_cast<double>(at_[1][j]) +
-           w.c * static_cast<double>(at_[2][j]);
+    return w[0] * double{at_[0][j]} + w[1] * double{at_[1][j]} + w[2] * double{at_[2][j]};
   }
   [[nodiscard]] Vec3d normal(const Weights& w) const {
     const Vec3d n(value(0, w), value(1, w), value(2, w));
@@ -65,125 +75,207 @@ class Interpolator {
   std::array<const float*, 3> at_{};
 };
 
-struct UvError {
-  double error, area;
-};
-
-/// What kCovered of the area does not exceed. Beside a seam the nearest point of the source may lie on the other side
-/// of it, in another island: such points are few, and their jumps say nothing of the texture's drift.
-double upper_value(std::vector<UvError>& errors) {
-  constexpr double kCovered = 0.95;
-  std::sort(errors.begin(), errors.end(), [](const UvError& a, const UvError& b) {
-    return a.error != b.error ? a.error < b.error : a.area < b.area;
-  });
-  double total = 0.0, below = 0.0;
-  for (const UvError& e : errors) total += e.area;
-  for (const UvError& e : errors) {
-    below += e.area;
-    if (below >= kCovered * total) return e.error;
-  }
-  return 0.0;
+Vec3d point_at(const TriangleCorners& corners, const Weights& w) {
+  return corners[0] * w[0] + corners[1] * w[1] + corners[2] * w[2];
 }
 
-/// A point of the group that is compared.
-struct PaintedPoint {
-  std::uint32_t triangle;
-  Vec3d at;
-  Weights weights;
-  double area;  ///< twice the triangle's
-};
+TriangleCorners corners_of(const GroupSurface& group, std::uint32_t triangle) {
+  const auto& ids = group.triangles[triangle];
+  return {group.positions[ids[0]], group.positions[ids[1]], group.positions[ids[2]]};
+}
 
-/// Three of each triangle, or one, each of the three in its turn.
-std::vector<PaintedPoint> choose_points(const GroupSurface& group) {
-  constexpr std::array<Weights, 3> kPoints{
-      {{2.0 / 3, 1.0 / 6, 1.0 / 6}, {1.0 / 6, 2.0 / 3, 1.0 / 6}, {1.0 / 6, 1.0 / 6, 2.0 / 3}}};
-  const bool is_large = group.triangles.size() > kFewTriangles;
-  std::vector<PaintedPoint> points;
-  points.reserve((is_large ? 1 : 3) * group.triangles.size());
-  for (std::uint32_t t = 0; t < group.triangles.size(); ++t) {
-    const auto& ids = group.triangles[t];
-    const TriangleCorners corners{group.positions[ids[0]], group.positions[ids[1]], group.positions[ids[2]]};
-    const Vec3d cross = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
-    const double area = std::sqrt(glm::dot(cross, cross));
-    if (!(area > 0.0)) continue;
-    for (std::size_t i = 0; i < kPoints.size(); ++i) {
-      if (is_large && i != t % 3) continue;
-      const Weights& w = kPoints[i];
-      points.push_back({t, corners[0] * w.a + corners[1] * w.b + corners[2] * w.c, w, area});
+/// A group's triangles chart by chart and by places in the source's tree: evenly spread, and one point's place is a
+/// hint for the next.
+std::vector<SurfacePart> order_triangles(const GroupSurface& group, const SurfaceAttributes& attributes,
+                                         std::span<const TreeSlot> near) {
+  struct Ordered {
+    std::uint32_t chart, slot, triangle;
+    [[nodiscard]] bool operator<(const Ordered& other) const {
+      return std::tie(chart, slot, triangle) < std::tie(other.chart, other.slot, other.triangle);
     }
+  };
+  std::vector<Ordered> order;
+  order.reserve(group.triangles.size());
+  for (std::uint32_t t = 0; t < group.triangles.size(); ++t) {
+    order.push_back({attributes.chart_of(t), near.empty() ? 0U : near[t].value, t});
   }
-  return points;
+  std::sort(order.begin(), order.end());
+  std::vector<SurfacePart> parts;
+  parts.reserve(order.size());
+  for (const Ordered& o : order) parts.push_back({o.triangle, kNoId, area_of(corners_of(group, o.triangle))});
+  return parts;
 }
 
-/// How far the attributes of a point are from those of the nearest one of the source.
+/// How far the attributes of a point are from those of the one that it is compared with.
 struct PointDrift {
   double normal2 = 0.0;
   std::array<double, scene::kMaxUvSets> uv{};
   bool is_known = false;
 };
 
-/// The two surfaces and what they carry.
-struct PaintedSurfaces {
-  const SurfaceTree& source;
-  const SurfaceAttributes &source_attributes, &group_attributes;
-  const AttributeLayout& layout;
-
-  [[nodiscard]] PointDrift drift_of(const PaintedPoint& point, TreeSlot nearest) const {
-    PointDrift drift;
-    drift.is_known = true;
-    const Interpolator ours(group_attributes, layout.stride(), point.triangle);
-    const Interpolator theirs(source_attributes, layout.stride(), source.triangle_at(nearest));
-    const Weights there = weights_of(point.at, source.corners_at(nearest));
-    if (layout.has_normal) {
-      const Vec3d off = ours.normal(point.weights) - theirs.normal(there);
-      drift.normal2 = glm::dot(off, off);
-    }
-    for (std::size_t s = 0; s < layout.uv_set_count; ++s) {
-      const std::size_t j = layout.uv_offset() + 2 * s;
-      const double u = ours.value(j, point.weights) - theirs.value(j, there);
-      const double v = ours.value(j + 1, point.weights) - theirs.value(j + 1, there);
-      drift.uv[s] = std::sqrt(u * u + v * v);
-    }
-    return drift;
+PointDrift drift_between(const Interpolator& ours, const Weights& here, const Interpolator& theirs,
+                         const Weights& there, const AttributeLayout& layout) {
+  PointDrift drift;
+  drift.is_known = true;
+  if (layout.has_normal) {
+    const Vec3d off = ours.normal(here) - theirs.normal(there);
+    drift.normal2 = glm::dot(off, off);
   }
+  for (std::size_t s = 0; s < layout.uv_set_count; ++s) {
+    const std::size_t j = layout.uv_offset() + 2 * s;
+    const double u = ours.value(j, here) - theirs.value(j, there);
+    const double v = ours.value(j + 1, here) - theirs.value(j + 1, there);
+    drift.uv[s] = std::sqrt(u * u + v * v);
+  }
+  return drift;
+}
+
+/// Finds what is nearest to one point after another, each near to the one before it.
+class NearOfChart {
+ public:
+  NearOfChart(const SurfaceTree& tree, const SurfaceAttributes& attributes) : tree_(tree), attributes_(attributes) {}
+
+  /// Of `chart`; of all where that is kNoId.
+  [[nodiscard]] TreeSlot find(const Vec3d& point, std::uint32_t chart, TreeSlot hint) {
+    const Vec3f at = tree_.to_frame(point);
+    SurfaceTree::Hit nearest;
+    for (const TreeSlot slot : {last_, hint}) {
+      if (slot.is_valid()) nearest = tree_.look_around(at, slot, nearest);
+    }
+    nearest = tree_.find_nearest(at, nearest, 0.0F);
+    if (chart == kNoId || (nearest.slot.is_valid() && chart_at(nearest.slot) == chart)) return last_ = nearest.slot;
+    return last_ = find_of(at, chart);
+  }
+
+ private:
+  [[nodiscard]] std::uint32_t chart_at(TreeSlot slot) const { return attributes_.chart_of(tree_.triangle_at(slot)); }
+  [[nodiscard]] TreeSlot find_of(const Vec3f& at, std::uint32_t chart) const {
+    const auto is_of_chart = [&](std::uint32_t triangle) { return attributes_.chart_of(triangle) == chart; };
+    SurfaceTree::Hit best;
+    if (last_.is_valid()) best = tree_.look_around_of(at, last_, best, is_of_chart);
+    return tree_.find_nearest_of(at, best, is_of_chart).slot;
+  }
+
+  const SurfaceTree& tree_;
+  const SurfaceAttributes& attributes_;
+  TreeSlot last_;
 };
 
+/// What kCovered of the points do not exceed, in the set that is farthest off: beside seams and where a corner moved
+/// the farthest a few points are off by much more than all others, and a maximum would be theirs alone.
+double upper_uv(std::span<const PointDrift> drifts, std::size_t uv_set_count) {
+  constexpr double kCovered = 0.95;
+  double worst = 0.0;
+  std::vector<double> errors;
+  for (std::size_t s = 0; s < uv_set_count; ++s) {
+    errors.clear();
+    for (const PointDrift& drift : drifts) {
+      if (drift.is_known) errors.push_back(drift.uv[s]);
+    }
+    if (errors.empty()) continue;
+    const auto within = static_cast<std::size_t>(std::ceil(kCovered * static_cast<double>(errors.size())));
+    const auto at = errors.begin() + static_cast<std::ptrdiff_t>(within - 1);
+    std::nth_element(errors.begin(), at, errors.end());
+    worst = std::max(worst, *at);
+  }
+  return worst;
+}
+
+/// Points that one thread compares, each near to the one before.
+constexpr std::size_t kPointsOfChunk = 64;
+
 }  // namespace
+
+std::array<double, 3> shares_of(std::uint32_t number) {
+  const auto part = [&](double step) {
+    const double x = 0.5 + step * number;
+    return x - std::floor(x);
+  };
+  const double b = part(0.7548776662466927), c = part(0.5698402909980532);  // 1/g and 1/g^2, g^3 = g + 1
+  return b + c <= 1.0 ? Weights{1.0 - b - c, b, c} : Weights{b + c - 1.0, 1.0 - b, 1.0 - c};
+}
+
+std::vector<SurfacePart> spread_points(std::span<const SurfacePart> parts, std::uint32_t count) {
+  double total = 0.0;
+  for (const SurfacePart& part : parts) total += part.area;
+  std::vector<SurfacePart> points;
+  if (!(total > 0.0)) return points;
+  points.reserve(count);
+  const double step = total / static_cast<double>(count);
+  double passed = 0.0;
+  for (const SurfacePart& part : parts) {
+    passed += part.area;
+    while (points.size() < count && (static_cast<double>(points.size()) + 0.5) * step <= passed) {
+      const auto number = static_cast<std::uint32_t>(points.size());
+      points.push_back({part.triangle, part.number == kNoId ? number : part.number, step});
+    }
+  }
+  return points;
+}
+
+double area_of(const TriangleCorners& corners) {
+  const Vec3d cross = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
+  return std::sqrt(glm::dot(cross, cross));
+}
 
 AttributeDeviation measure_attributes(const SourceTree& source, const SurfaceAttributes& source_attributes,
                                       const GroupSurface& group, const SurfaceAttributes& group_attributes,
                                       const AttributeLayout& layout, std::span<const TreeSlot> near) {
   const SurfaceTree& tree = source.impl().tree;
   if ((!layout.has_normal && layout.uv_set_count == 0) || tree.size() == 0) return {};
-  const std::vector<PaintedPoint> points = choose_points(group);
-  const PaintedSurfaces surfaces{tree, source_attributes, group_attributes, layout};
+  const std::vector<SurfacePart> points = spread_points(order_triangles(group, group_attributes, near),
+                                                        layout.uv_set_count > 0 ? kPointsForUvs : kPointsForNormals);
+  if (points.empty()) return {};
   std::vector<PointDrift> drifts(points.size());
-  // Side by side where each point knows its place; else one leads to the next.
-  const std::size_t chunk = near.empty() ? std::max<std::size_t>(1, points.size()) : 64;
-  parallel_for_each_chunk(points.size(), chunk, [&](std::size_t, std::size_t begin, std::size_t end) {
-    TreeSlot place{0U};
+  parallel_for_each_chunk(points.size(), kPointsOfChunk, [&](std::size_t, std::size_t begin, std::size_t end) {
+    NearOfChart nearest(tree, source_attributes);
     for (std::size_t i = begin; i < end; ++i) {
-      if (!near.empty()) place = near[points[i].triangle];
-      const Vec3f at = tree.to_frame(points[i].at);
-      const SurfaceTree::Hit hit = tree.find_nearest(at, tree.look_around(at, place, {}), 0.0F);
-      if (!hit.slot.is_valid()) continue;
-      place = hit.slot;
-      drifts[i] = surfaces.drift_of(points[i], place);
+      const std::uint32_t t = points[i].triangle;
+      const Weights here = shares_of(points[i].number);
+      const Vec3d at = point_at(corners_of(group, t), here);
+      const TreeSlot slot = nearest.find(at, group_attributes.chart_of(t), near.empty() ? TreeSlot() : near[t]);
+      if (!slot.is_valid()) continue;
+      drifts[i] = drift_between({group_attributes, layout.stride(), t}, here,
+                                {source_attributes, layout.stride(), tree.triangle_at(slot)},
+                                weights_of(at, tree.corners_at(slot)), layout);
     }
   });
-  double total = 0.0, normal2 = 0.0;
-  std::array<std::vector<UvError>, scene::kMaxUvSets> uv_errors;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    total += points[i].area;
-    if (!drifts[i].is_known) continue;
-    normal2 += points[i].area * drifts[i].normal2;
-    for (std::size_t s = 0; s < layout.uv_set_count; ++s) uv_errors[s].push_back({drifts[i].uv[s], points[i].area});
-  }
-  if (!(total > 0.0)) return {};
-  AttributeDeviation result;
-  result.normal = 2.0 * arc_sine_degrees(std::min(1.0, 0.5 * std::sqrt(normal2 / total)));
-  for (std::vector<UvError>& errors : uv_errors) result.uv = std::max(result.uv, upper_value(errors));
-  return result;
+  double normal2 = 0.0;
+  for (const PointDrift& drift : drifts) normal2 += drift.normal2;
+  const double chord = std::sqrt(normal2 / static_cast<double>(points.size()));
+  return {2.0 * arc_sine_degrees(std::min(1.0, 0.5 * chord)), upper_uv(drifts, layout.uv_set_count)};
+}
+
+SourceDeviation measure_uvs_from_source(const SourceTree& source, const SurfaceAttributes& source_attributes,
+                                        std::span<const SurfacePart> parts, const GroupSurface& group,
+                                        const SurfaceAttributes& group_attributes, const AttributeLayout& layout) {
+  SurfaceTree tree;
+  tree.build({group.positions, group.triangles});
+  std::vector<std::uint32_t> charts;  // that the group has
+  for (std::uint32_t t = 0; t < group.triangles.size(); ++t) charts.push_back(group_attributes.chart_of(t));
+  std::sort(charts.begin(), charts.end());
+  charts.erase(std::unique(charts.begin(), charts.end()), charts.end());
+  SourceDeviation found;
+  found.points = spread_points(parts, kPointsForUvs);
+  found.near.resize(found.points.size(), kNoId);
+  std::vector<PointDrift> drifts(found.points.size());
+  parallel_for_each_chunk(drifts.size(), kPointsOfChunk, [&](std::size_t, std::size_t begin, std::size_t end) {
+    NearOfChart nearest(tree, group_attributes);
+    for (std::size_t i = begin; i < end; ++i) {
+      const std::uint32_t t = found.points[i].triangle, chart = source_attributes.chart_of(t);
+      const Weights here = shares_of(found.points[i].number);
+      const Vec3d at = point_at(source.impl().corners(t), here);
+      const bool has_chart = std::binary_search(charts.begin(), charts.end(), chart);
+      const TreeSlot slot = nearest.find(at, has_chart ? chart : kNoId, {});
+      if (!slot.is_valid()) continue;
+      found.near[i] = tree.triangle_at(slot);
+      drifts[i] = drift_between({source_attributes, layout.stride(), t}, here,
+                                {group_attributes, layout.stride(), found.near[i]},
+                                weights_of(at, tree.corners_at(slot)), layout);
+    }
+  });
+  found.uv = upper_uv(drifts, layout.uv_set_count);
+  return found;
 }
 
 }  // namespace meshlode::builder

@@ -83,6 +83,16 @@ class SurfaceTree {
   template <class Visit>
   void visit_along(const Vec3d& from, const Vec3d& to, const Visit& visit) const;
 
+  /// The nearest triangle that beats `best` and that accept(triangle) takes, else `best`. The nearer `best`, the fewer
+  /// are looked at.
+  template <class Accept>
+  [[nodiscard]] Hit find_nearest_of(const Vec3f& point, Hit best, const Accept& accept) const;
+  /// Of the four triangles around a slot.
+  template <class Accept>
+  [[nodiscard]] Hit look_around_of(const Vec3f& point, TreeSlot slot, Hit best, const Accept& accept) const {
+    return test_leaf_of(point, slot.value / 4, best, accept);
+  }
+
   /// Of the four triangles around a slot the one that is best for all three points: the distance of the farthest of
   /// them. The distance to a triangle is convex, so that whatever lies between the points is no farther.
   [[nodiscard]] Hit look_around(const std::array<Vec3f, 3>& points, TreeSlot slot) const;
@@ -116,6 +126,8 @@ class SurfaceTree {
   void fill_nodes();
   void fill_capsules();
   [[nodiscard]] Hit test_leaf(const Vec3f& point, std::uint32_t leaf, Hit best) const;
+  template <class Accept>
+  [[nodiscard]] Hit test_leaf_of(const Vec3f& point, std::uint32_t leaf, Hit best, const Accept& accept) const;
   [[nodiscard]] Hit test_triangles(const Vec3f& point, std::uint32_t index, const Leaf& leaf, const LeafTerms& terms,
                                    Hit best) const;
 
@@ -133,6 +145,56 @@ class SurfaceTree {
   /// In the frame: how far rounding may move a corner, a ray's end and a box's side, generously.
   static constexpr float kRayGrace = 2e-6F;
 };
+
+template <class Accept>
+SurfaceTree::Hit SurfaceTree::test_leaf_of(const Vec3f& point, std::uint32_t leaf, Hit best,
+                                           const Accept& accept) const {
+  const Leaf four = leaves_.empty() ? made_leaf(leaf).leaf : leaves_[leaf];
+  const LeafTerms terms = terms_.empty() ? terms_of(four) : terms_[leaf];
+  const Lanes distance2 = distances2_to(four, terms, {lanes(point.x), lanes(point.y), lanes(point.z)});
+  for (std::uint32_t k = 0; k < 4 && 4 * leaf + k < size(); ++k) {
+    const TreeSlot slot(4 * leaf + k);
+    if (distance2[k] < best.distance2 && accept(triangle_at(slot))) best = {slot, distance2[k]};
+  }
+  return best;
+}
+
+template <class Accept>
+SurfaceTree::Hit SurfaceTree::find_nearest_of(const Vec3f& point, Hit best, const Accept& accept) const {
+  if (nodes_.empty()) return best;
+  struct Entry {
+    std::uint32_t level, node;
+    float distance2;
+  };
+  std::array<Entry, 3 * kMaxDepth + 4> stack;
+  std::size_t size = 0;
+  stack[size++] = {0, 0, 0.0F};
+  const auto depth = static_cast<std::uint32_t>(level_start_.size() - 1);
+  while (size > 0) {
+    const Entry entry = stack[--size];
+    if (!(entry.distance2 < best.distance2)) continue;
+    if (entry.level == depth) {
+      best = test_leaf_of(point, entry.node, best, accept);
+      continue;
+    }
+    const Node& node = nodes_[level_start_[entry.level] + entry.node];
+    Lanes distance2 = lanes(0.0F);
+    for (int axis = 0; axis < 3; ++axis) {
+      const Lanes at = lanes(point[axis]);
+      const Lanes below = load_lanes(node.low[axis].data()) - at, above = at - load_lanes(node.high[axis].data());
+      const Lanes outside = max_lanes(max_lanes(below, above), lanes(0.0F));
+      distance2 += outside * outside;
+    }
+    const std::size_t first = size;  // the nearest is looked at first, and so put last
+    for (std::uint32_t k = 0; k < 4; ++k) {
+      if (!(distance2[k] < best.distance2)) continue;
+      std::size_t at = size++;
+      for (; at > first && stack[at - 1].distance2 < distance2[k]; --at) stack[at] = stack[at - 1];
+      stack[at] = {entry.level + 1, 4 * entry.node + k, distance2[k]};
+    }
+  }
+  return best;
+}
 
 template <class Visit>
 void SurfaceTree::visit_along(const Vec3d& from, const Vec3d& to, const Visit& visit) const {

@@ -59,6 +59,7 @@ class Certifier {
         form_(form),
         dag_(dag),
         source_(std::move(source)),
+        attributes_(source_, mesh, form, dag),
         made_of_(clusters_made_of_groups(dag)),
         bounds_(dag.triangles.size()) {
     for (std::size_t t = 0; t < mesh.exact_triangles.size(); ++t) {
@@ -106,13 +107,14 @@ class Certifier {
         bounds_[cluster.first_triangle + t] = certified.bounds[next++];
       }
     }
-    measure_group_attributes(source_, mesh_, form_, made_of_[id], {}, dag_, group);
+    attributes_.measure(group, made_of_[id], {});
   }
 
   const PreparedMesh& mesh_;
   const CanonicalForm& form_;
   LodDag& dag_;
   SourceTree source_;
+  GroupAttributes attributes_;
   std::vector<std::vector<std::uint32_t>> made_of_;  ///< per group: the clusters made from it
   std::vector<TriangleBound> bounds_;                ///< per triangle of the DAG
 };

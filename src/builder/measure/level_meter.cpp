@@ -5,7 +5,6 @@
 
 #include "base/parallel.h"
 #include "base/release.h"
-#include "builder/measure/group_attributes.h"
 
 namespace meshlode::builder {
 
@@ -32,6 +31,7 @@ LevelMeter::LevelMeter(const PreparedMesh& mesh, SourceTree source, CanonicalFor
       form_(form),
       dag_(dag),
       source_(std::move(source)),
+      attributes_(source_, mesh, form, dag),
       outputs_(dag.groups.size()),
       units_of_(dag.clusters.size()) {
   parallel_all([&] { units_ = SourceUnits(source_.impl(), level0_clusters(form), dag.clusters.size()); },
@@ -174,7 +174,7 @@ void LevelMeter::finish_groups(std::span<const Made> made) {
     if (group.is_terminal) return;
     group.deviation = known(g).found;
     group.error = std::max(known(g).floor, margin_ * known(g).found);
-    measure_group_attributes(source_, mesh_, form_, outputs_[g], near[i], dag_, group);
+    attributes_.measure(group, outputs_[g], near[i]);
   });
 }
 

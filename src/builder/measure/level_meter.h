@@ -24,6 +24,7 @@
 #include "builder/deviation/source_tree.h"
 #include "builder/lod_dag.h"
 #include "builder/measure/canonical_form.h"
+#include "builder/measure/group_attributes.h"
 #include "builder/measure/level_surface.h"
 #include "builder/measure/overlay.h"
 #include "builder/measure/source_units.h"
@@ -139,6 +140,7 @@ class LevelMeter {
   const CanonicalForm& form_;
   LodDag& dag_;
   SourceTree source_;
+  GroupAttributes attributes_;
   SourceUnits units_;
   std::vector<LinkedSurface::Triangle> source_neighbor_;  ///< of link_source()
   std::vector<Vec3f> source_normal_;                      ///< likewise

@@ -81,26 +81,24 @@ std::pair<std::size_t, Shares> below(const ShadedSurface& source, const Long3& p
 }
 
 AttributeDeviation expected_deviation(const ShadedSurface& source, const ShadedSurface& group) {
-  constexpr long double kMost = 2.0L / 3.0L, kLeast = 1.0L / 6.0L;
+  std::vector<SurfacePart> parts;
+  for (std::uint32_t t = 0; t < group.triangles.size(); ++t) {
+    const Long3 cross = glm::cross(group.at(t, 1) - group.at(t, 0), group.at(t, 2) - group.at(t, 0));
+    parts.push_back({t, kNoId, static_cast<double>(std::sqrt(glm::dot(cross, cross)))});
+  }
   long double total = 0.0L, chords2 = 0.0L;
   std::array<std::vector<std::pair<long double, long double>>, 2> uv_errors;
-  for (std::size_t t = 0; t < group.triangles.size(); ++t) {
-    const Long3 cross = glm::cross(group.at(t, 1) - group.at(t, 0), group.at(t, 2) - group.at(t, 0));
-    const long double area = std::sqrt(glm::dot(cross, cross));
-    if (area == 0.0L) continue;
-    const std::array all{Shares{kMost, kLeast, kLeast}, Shares{kLeast, kMost, kLeast}, Shares{kLeast, kLeast, kMost}};
-    for (std::size_t i = 0; i < all.size(); ++i) {
-      if (group.triangles.size() > kFewTriangles && i != t % 3) continue;
-      const Shares& w = all[i];
-      const auto [at, there] = below(source, group.at(t, 0) * w[0] + group.at(t, 1) * w[1] + group.at(t, 2) * w[2]);
-      const Long3 chord = group.normal(t, w) - source.normal(at, there);
-      total += area;
-      chords2 += area * glm::dot(chord, chord);
-      for (std::size_t set = 0; set < 2; ++set) {
-        const Long2 off(group.value(t, 3 + 2 * set, w) - source.value(at, 3 + 2 * set, there),
-                        group.value(t, 4 + 2 * set, w) - source.value(at, 4 + 2 * set, there));
-        uv_errors[set].push_back({std::sqrt(glm::dot(off, off)), area});
-      }
+  for (const auto& [t, number, area] : spread_points(parts, kPointsForUvs)) {
+    const std::array<double, 3> shares = shares_of(number);
+    const Shares w{shares[0], shares[1], shares[2]};
+    const auto [at, there] = below(source, group.at(t, 0) * w[0] + group.at(t, 1) * w[1] + group.at(t, 2) * w[2]);
+    const Long3 chord = group.normal(t, w) - source.normal(at, there);
+    total += area;
+    chords2 += area * glm::dot(chord, chord);
+    for (std::size_t set = 0; set < 2; ++set) {
+      const Long2 off(group.value(t, 3 + 2 * set, w) - source.value(at, 3 + 2 * set, there),
+                      group.value(t, 4 + 2 * set, w) - source.value(at, 4 + 2 * set, there));
+      uv_errors[set].push_back({std::sqrt(glm::dot(off, off)), area});
     }
   }
   AttributeDeviation out;
@@ -132,14 +130,15 @@ ShadedSurface group_above(test::RandomSource& random, const ShadedSurface& sourc
   for (std::uint32_t t = 0; t < count; ++t) {
     const double reach = 0.1 * random.log_between(1e-2, 1.0);
     std::array<Vec3d, 3> corners;
-    // No point beside an edge of the source, where floats may choose the triangle beyond it.
+    // Above one triangle of the source: beside an edge of it floats may choose the triangle beyond.
     for (bool is_clear = false; !is_clear;) {
       const Vec3d middle(random.between(0.15, 0.85), random.between(-0.1, 0.1), random.between(0.15, 0.85));
       for (Vec3d& corner : corners) corner = (middle + random.in_cube(reach)) * size;
       is_clear = true;
-      for (std::size_t k = 0; k < 3; ++k) {
-        const Vec3d point = (corners[0] + corners[1] + corners[2] + 3.0 * corners[k]) / 6.0;
-        for (const long double share : below(source, Long3(point)).second) is_clear = is_clear && share > 1e-4L;
+      for (const Vec3d& corner : corners) {
+        const auto [at, there] = below(source, Long3(corner));
+        is_clear = is_clear && at == below(source, Long3(corners[0])).first;
+        for (const long double share : there) is_clear = is_clear && share > 1e-3L;
       }
     }
     // Of any length, since it is their direction that counts; every eighth has none.
@@ -175,7 +174,7 @@ TEST(AttributeOracle, EveryPointIsComparedWithTheOneBelow) {
   }
 }
 
-// The limit between few and many, and the series below and above 60 degrees, where the chord is 1.
+// The series below and above 60 degrees, where the chord is 1.
 TEST(AttributeOracle, AnyAngleComesOutOfItsChord) {
   test::RandomSource random(122);
   const ShadedSurface source = flat_source(random, 1, 1.0);
@@ -225,7 +224,7 @@ TEST(AttributeOracle, BeyondTheBorderItsEdgesAnswer) {
   }
 }
 
-// Of 60 points of one area each 57 are 95%: what these do not exceed, and not the next.
+// Of 20 triangles of one area each 19 are 95%: what these do not exceed, and not the next.
 TEST(AttributeOracle, TheQuantileIsMetAtItsPoint) {
   ShadedSurface source, group;
   source.positions = {{-100, 0, -100}, {300, 0, -100}, {-100, 0, 300}};
@@ -240,6 +239,34 @@ TEST(AttributeOracle, TheQuantileIsMetAtItsPoint) {
     group.triangles.push_back({3 * t, 3 * t + 1, 3 * t + 2});
   }
   EXPECT_NEAR(measured(source, group).uv, 19.0, 1e-9);
+}
+
+/// As many points of each triangle as its area asks for, to one, and evenly within it.
+TEST(AttributeOracle, PointsAreSpreadByArea) {
+  test::RandomSource random(123);
+  std::vector<SurfacePart> parts;
+  double total = 0.0;
+  for (std::uint32_t t = 0; t < 300; ++t) {
+    parts.push_back({t, kNoId, t % 7 == 3 ? 0.0 : random.log_between(1e-3, 1.0)});
+    total += parts.back().area;
+  }
+  const std::vector<SurfacePart> points = spread_points(parts, kPointsForUvs);
+  ASSERT_EQ(points.size(), kPointsForUvs);
+  std::vector<double> count(parts.size(), 0.0);
+  for (const SurfacePart& point : points) ++count[point.triangle];
+  for (std::size_t t = 0; t < parts.size(); ++t) {
+    EXPECT_NEAR(count[t], parts[t].area / total * kPointsForUvs, parts[t].area > 0.0 ? 1.0 + 1e-9 : 0.0);
+  }
+  // Sixteen equal parts of a triangle.
+  std::array<std::size_t, 16> within{};
+  for (const SurfacePart& point : points) {
+    const std::array<double, 3> w = shares_of(point.number);
+    EXPECT_NEAR(w[0] + w[1] + w[2], 1.0, 1e-15);
+    const auto i = static_cast<std::size_t>(4.0 * w[1]), j = static_cast<std::size_t>(4.0 * w[2]);
+    const bool is_turned = 4.0 * (w[1] + w[2]) - static_cast<double>(i + j) > 1.0;
+    ++within[std::min<std::size_t>(15, i * 8 - i * i + 2 * j + (is_turned ? 1 : 0))];  // the first is on the border
+  }
+  for (const std::size_t n : within) EXPECT_NEAR(static_cast<double>(n), kPointsForUvs / 16.0, 6.0);
 }
 
 // Where the source has no area there, its first corner answers.
