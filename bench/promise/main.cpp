@@ -224,8 +224,8 @@ std::array<std::uint32_t, 2> find_most_changed(const lab::FlipPicture& flip, std
 
 Result<Promised> open_promised(const std::string& path, format::Promise promise) {
   Result<run::Asset> asset = run::Asset::open(path);
+  if (asset) asset = asset->with_promise(promise);
   if (!asset) return asset.error();
-  if (const Status chosen = asset->choose(promise); !chosen) return chosen.error();
   Result<std::vector<run::DecodedCluster>> decoded = run::decode_all(*asset);
   if (!decoded) return decoded.error();
   return Promised(std::move(*asset), promise, std::move(*decoded));
