@@ -136,8 +136,8 @@ Status write_pool(JsonWriter& json, const draw::Device& device, const run::Asset
   json.field("all_resident_ms", pool->all_ms);
   json.field("pool_ms", pool->pool_ms);
   json.field("times_all_resident", pool->pool_ms / pool->all_ms);
-  json.field("all_resident_clusters", pool->all_clusters);
-  json.field("pool_clusters", pool->pool_clusters);
+  json.field("all_resident_clusters_of_all_frames", pool->all_clusters);
+  json.field("pool_clusters_of_all_frames", pool->pool_clusters);
   json.field("loads", pool->loads);
   json.field("frames_that_lacked_a_page", pool->incomplete);
   std::fprintf(stderr, "pool of %u of %u pages %8.3f ms  all resident %8.3f ms: %.3f times\n", pool->slots, pool->pages,
@@ -186,7 +186,7 @@ bool parse(int count, char** args, Options& out) {
       out.frames = static_cast<std::uint32_t>(std::atoi(value.c_str()));
     else if (arg == "--pixel-error")
       out.pixel_error = std::atof(value.c_str());
-    else if (arg == "--pool")
+    else if (arg == "--pool" && std::atof(value.c_str()) > 0.0 && std::atof(value.c_str()) <= 1.0)
       out.pool = std::atof(value.c_str());
     else if (arg == "--size" && std::sscanf(value.c_str(), "%ux%u", &out.width, &out.height) == 2)
       continue;

@@ -458,7 +458,8 @@ MESHLODE_API meshlode_status meshlode_streaming_order(const meshlode_asset* asse
                                                       meshlode_error* error);
 
 /** How much a page matters, from its groups. Put into the rule of selection (docs/reference/selection.md), the sphere
- * and the largest error give at least the projected error of any group of the page, and of what depends on it. */
+ * and the largest error give at least the projected error of any group of the page, and of what depends on it, up to
+ * rounding: 1e-5 of it. */
 typedef struct meshlode_hint {
   float center[3];      /**< of a sphere that contains all that the page's groups draw, as meshlode_group.center */
   float radius;         /**< object units; MESHLODE_INFINITE_ERROR: all of space */
@@ -472,10 +473,10 @@ typedef struct meshlode_hint {
 MESHLODE_API meshlode_hint meshlode_page_hint(const meshlode_asset* asset, uint32_t page);
 
 /** What to read before the first picture: the pages without which nothing is drawn, those that hold a terminal group of
- * a mesh with an instance. Ranges of the file, ascending, `*count` of them. Pages with at most `max_gap` bytes between
- * them share a range; neighbours always do, so that one read gets the first pages of many small meshes. A gap holds
- * other pages, as a whole: 0 reads nothing else; up to a link's bandwidth times its latency a gap costs less than
- * another read. Ranges, capacity, count and errors as the items of meshlode_select_view. */
+ * a mesh with an instance that is not singular. Ranges of the file, ascending, `*count` of them. Pages with at most
+ * `max_gap` bytes between them share a range; neighbours always do, so that one read gets the first pages of many small
+ * meshes. A gap holds other pages, as a whole: 0 reads nothing else; up to a link's bandwidth times its latency a gap
+ * costs less than another read. Ranges, capacity, count and errors as the items of meshlode_select_view. */
 MESHLODE_API meshlode_status meshlode_first_ranges(const meshlode_asset* asset, uint64_t max_gap,
                                                    meshlode_range* ranges, size_t capacity, size_t* count,
                                                    meshlode_error* error);

@@ -273,13 +273,14 @@ class AssetFile {
       format::Promise promise = format::Promise::kPosition) const;
 
   /// How much a page matters, from its groups, with the errors of positions. Put into the rule of selection,
-  /// sphere and largest error give at least the projected error of any group of the page, and of what depends on it.
+  /// sphere and largest error give at least the projected error of any group of the page, and of what depends on it,
+  /// up to rounding: 1e-5 of it.
   /// \pre page < pages().size()
   [[nodiscard]] format::PageHintRecord page_hint(std::uint32_t page) const;
 
   /// What to read before the first picture: where the pages lie without which nothing is drawn, those that hold a
-  /// terminal group of a mesh with an instance. Ascending. Pages with at most `max_gap` bytes between them share a
-  /// range; neighbours always do, so that one read gets the first pages of many small meshes.
+  /// terminal group of a mesh with an instance that is not singular. Ascending. Pages with at most `max_gap` bytes
+  /// between them share a range; neighbours always do, so that one read gets the first pages of many small meshes.
   [[nodiscard]] std::vector<ByteRange> first_ranges(std::uint64_t max_gap = 0) const;
 
   /// The page that holds a cluster. \pre cluster < clusters().size()

@@ -63,7 +63,7 @@ struct AttributeSteps {
 struct LodDag {
   std::vector<DagCluster> clusters;
   std::vector<DagGroup> groups;
-  std::vector<Vec3i> vertex_position;                  ///< grid units
+  std::vector<Vec3i> vertex_position;                  ///< grid units; each vertex is of one cluster
   std::vector<float> vertex_attributes;                ///< AttributeLayout::stride() floats per vertex
   std::vector<std::array<std::uint8_t, 3>> triangles;  ///< local vertex indices of the cluster
   std::vector<std::uint32_t> triangle_material;

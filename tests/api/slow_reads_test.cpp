@@ -38,19 +38,13 @@ class SlowDisk {
     is_reading_ = false;
     changed_.notify_all();
   }
-  /// The loader waits for the next update, or for the end.
-  [[nodiscard]] bool wait_for_update() {
-    std::unique_lock lock(mutex_);
+  /// The loader has nothing left to do.
+  void rest() {
+    const std::lock_guard lock(mutex_);
     is_idle_ = true;
     changed_.notify_all();
-    changed_.wait(lock, [&] { return !is_idle_ || is_over_; });
-    return !is_over_;
   }
-  void update() {
-    const std::lock_guard lock(mutex_);
-    is_idle_ = false;
-    changed_.notify_all();
-  }
+  /// No read takes any time from now on.
   void end() {
     const std::lock_guard lock(mutex_);
     is_over_ = true;
@@ -99,24 +93,23 @@ TEST(SlowReads, NoFrameWaitsForOne) {
   std::vector<std::vector<std::uint32_t>> slots(page_count);
   std::mutex mutex;
   SlowDisk disk;
-  std::thread loader([&] {
-    do {
-      for (std::uint32_t page = 0, slot = 0;;) {
-        {
-          const std::lock_guard lock(mutex);
-          if (meshlode_page_cache_begin(&cache, &page, &slot) == 0) break;
-        }
-        disk.read();
-        const meshlode_range range = meshlode_page_range(asset, page);
-        slots[slot].resize((pages[page].bytes + 3) / 4);
-        const bool is_loaded = meshlode_unpack_page(asset, page, bytes->data() + range.offset, range.bytes,
-                                                    slots[slot].data(), pages[page].bytes, nullptr) == MESHLODE_OK;
-        EXPECT_TRUE(is_loaded);
+  const auto load = [&] {
+    for (std::uint32_t page = 0, slot = 0;;) {
+      {
         const std::lock_guard lock(mutex);
-        meshlode_page_cache_end(&cache, page, is_loaded ? 1 : 0);
+        if (meshlode_page_cache_begin(&cache, &page, &slot) == 0) break;
       }
-    } while (disk.wait_for_update());
-  });
+      disk.read();
+      const meshlode_range range = meshlode_page_range(asset, page);
+      slots[slot].resize((pages[page].bytes + 3) / 4);
+      const bool is_loaded = meshlode_unpack_page(asset, page, bytes->data() + range.offset, range.bytes,
+                                                  slots[slot].data(), pages[page].bytes, nullptr) == MESHLODE_OK;
+      EXPECT_TRUE(is_loaded);
+      const std::lock_guard lock(mutex);
+      meshlode_page_cache_end(&cache, page, is_loaded ? 1 : 0);
+    }
+    disk.rest();
+  };
 
   std::uint32_t frames = 0, reads = 0, coarser = 0;
   const auto draw = [&] {
@@ -133,7 +126,8 @@ TEST(SlowReads, NoFrameWaitsForOne) {
   };
   draw();
   EXPECT_EQ(count, 0U);
-  for (disk.update(); !testing::Test::HasFatalFailure() && disk.wait_for_read(); ++reads) {
+  std::thread loader(load);  // something is wanted by now
+  for (; !testing::Test::HasFatalFailure() && disk.wait_for_read(); ++reads) {
     // The read is still under way when these frames are done, however long it takes.
     for (int k = 0; k < 3; ++k) draw();
     EXPECT_EQ(count > 0, reads > 0) << "the coarsest page is the first";

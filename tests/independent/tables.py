@@ -188,7 +188,7 @@ def dependencies_of(index, page, tables):
 
 
 def check_hints(tables):
-    """Their form; what they say of the groups is for `holds_hints`. Floats are their bits, and finite."""
+    """Their form; what they say of the groups is for `hold_hints`. Floats are their bits, and finite."""
     if not tables["has_hints"]:
         return
     check(len(tables["PHNT"]) == len(tables["PAGT"]), "section PHNT, field record_count")
@@ -213,7 +213,8 @@ def hold_hints(tables):
         check(hint["smallest_error"] == min(errors), place + "smallest_error")
         for group in groups:
             away = math.dist([number(x) for x in group["center"]], [number(x) for x in hint["center"]])
-            check(away + number(group["radius"]) <= number(hint["radius"]), place + "radius", "does not reach its groups")
+            is_held = hint["radius"] == INFINITE or away + number(group["radius"]) <= number(hint["radius"])
+            check(is_held, place + "radius", "does not reach its groups")
 
 
 def check_blobs(tables):

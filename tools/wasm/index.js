@@ -380,14 +380,15 @@ class Asset {
 
   /**
    * Ranges {offset, bytes} to read before the first picture, ascending. Pages with at most `maxGap` bytes between them share one,
-   * and neighbours always do.
+   * and neighbours always do. A fraction is rounded down.
    */
   firstRanges(maxGap = 0) {
+    const gap = BigInt(Math.floor(Math.min(Math.max(maxGap || 0, 0), Number.MAX_SAFE_INTEGER)));
     const capacity = this.#count('pages'); // no more ranges than pages
     const frame = new Frame(this.#runtime, 8 + ERROR_BYTES + 16 * capacity);
     try {
       const [error, at] = [frame.at + 8, frame.at + 8 + ERROR_BYTES];
-      this.#check(this.#wasm.meshlode_first_ranges(this.#at, BigInt(maxGap), at, capacity, frame.at, error), error);
+      this.#check(this.#wasm.meshlode_first_ranges(this.#at, gap, at, capacity, frame.at, error), error);
       const view = this.#runtime.view();
       const range = (_, i) => ({ offset: uint64(view, at + 16 * i), bytes: uint64(view, at + 16 * i + 8) });
       return Array.from({ length: view.getUint32(frame.at, true) }, range);

@@ -222,6 +222,9 @@ Status match_level0(const PreparedMesh& mesh, const LodDag& dag, std::span<const
 }  // namespace
 
 Result<CanonicalForm> canonical_form(const PreparedMesh& mesh, const LodDag& dag) {
+  if (mesh.exact_on_grid.size() + dag.vertex_position.size() >= kNoId) {
+    return Error{ErrorCode::kUnsupported, {}, "source and levels have more than 2^32 - 2 vertices together"};
+  }
   CanonicalForm form;
   form.triangles.resize(dag.triangles.size());
   parallel_for_each_index(dag.clusters.size(), 16, [&](std::size_t c) {

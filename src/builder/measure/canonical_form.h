@@ -29,7 +29,8 @@ struct CanonicalForm {
 };
 
 /// Level 0 is matched to the source by places on the grid; of triangles in the same places the first of the one is the
-/// first of the other. Error: kCheckFailed where level 0 is another surface than the source.
+/// first of the other. Errors: kCheckFailed where level 0 is another surface than the source; kUnsupported for 2^32
+/// vertices and more.
 [[nodiscard]] Result<CanonicalForm> canonical_form(const PreparedMesh& mesh, const LodDag& dag);
 
 }  // namespace meshlode::builder

@@ -85,7 +85,7 @@ struct StreamFramesReport {
   GpuCheck check{Rule::kV410, {}};  ///< items: frames; failures: frames with a difference
   std::uint32_t frames = 0, slots = 0, pages = 0;
   std::uint64_t loads = 0, incomplete = 0;  ///< pages; frames that lacked a page
-  std::uint64_t spared = 0;                 ///< pages that are wanted without culling alone, over all frames
+  std::uint64_t spared = 0;                 ///< pages wanted only without culling, over all frames
 };
 /// Draws from a pool of pages that follows the device's requests in the view volume, and holds every frame, culled and
 /// not, against ResidentSelector with the same pages and against the CPU's picture. Errors: as verify_on_gpu().

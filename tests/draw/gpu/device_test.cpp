@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
 #include <array>
 #include <cstring>
+#include <string_view>
 
 #include <gtest/gtest.h>
 
+#include "draw/gpu/passes/pass.h"
+#include "draw/gpu/shaders.h"
 #include "gpu_support.h"
 
 namespace meshlode::draw::test {
@@ -36,6 +40,22 @@ TEST_F(Gpu, TheFirstDeviceIsTheFirstOfTheList) {
   const auto device = Device::open({.device = "0", .validate = false});
   ASSERT_TRUE(device) << device.error().message();
   EXPECT_EQ(device->info().name, devices->front().name);
+}
+
+TEST(Shaders, AreThereByEveryNameThatIsAskedFor) {
+  const auto expect_is_there = [](std::string_view name) {
+    const auto all = all_shaders();
+    EXPECT_TRUE(std::any_of(all.begin(), all.end(), [&](const Shader& s) { return s.name == name; })) << name;
+  };
+  for (const Pass* pass : {&kInstancesPass, &kTraversePass, &kPersistentPass, &kClustersPass, &kSoftwarePass, &kFarPass,
+                           &kClippedPass, &kHardwarePass, &kPyramidPass}) {
+    if (pass->shader != nullptr) expect_is_there(pass->shader);
+    if (pass->masked != nullptr) expect_is_there(pass->masked);
+  }
+  for (const char* name :
+       {"hardware.mesh", "hardware.vert", "hardware.frag", "hardware_mesh.frag", "hardware_mask.frag",
+        "hardware_mesh_mask.frag", "resolve.comp", "resolve_textures.comp", "sort.comp", "roots.comp", "decode.comp"})
+    expect_is_there(name);
 }
 
 }  // namespace

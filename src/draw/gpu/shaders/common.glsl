@@ -23,7 +23,7 @@ layout(push_constant, scalar) uniform Push {
 
 const uint kGroupLanes = 8u;   // invocations that share an open group's clusters
 const uint kFarLanes = 32u;    // that draw a far root
-const uint kFarPerGroup = 4u;  // far roots of a workgroup of raster_far.comp
+const uint kFarPerGroup = 128u / kFarLanes;  // far roots of a workgroup of raster_far.comp
 const uint kNone = 0xFFFFFFFFu;
 const uint kInstanceMirrored = 1u;
 const uint kInstanceSingular = 2u;
