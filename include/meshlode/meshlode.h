@@ -468,7 +468,8 @@ typedef struct meshlode_hint {
   uint32_t reserved[2]; /**< 0 */
 } meshlode_hint;
 
-/** The hint of a page; zeros if there is no such page. Derived from the groups, with the errors of positions;
+/** The hint of a page; zeros if there is no such page. Derived from the groups, with the errors of positions: a view
+ * that promises more may want the page earlier;
  * `meshlode build --page-hints` stores the same in the file, for readers that do not read groups at once. */
 MESHLODE_API meshlode_hint meshlode_page_hint(const meshlode_asset* asset, uint32_t page);
 

@@ -272,7 +272,8 @@ class AssetFile {
   [[nodiscard]] Result<std::vector<std::uint32_t>> streaming_order(
       format::Promise promise = format::Promise::kPosition) const;
 
-  /// How much a page matters, from its groups, with the errors of positions. Put into the rule of selection,
+  /// How much a page matters, from its groups, with the errors of positions (a view that promises more may want it
+  /// earlier). Put into the rule of selection,
   /// sphere and largest error give at least the projected error of any group of the page, and of what depends on it,
   /// up to rounding: 1e-5 of it.
   /// \pre page < pages().size()

@@ -142,7 +142,7 @@ TEST(ApiPromise, CSelectsWhatCPlusPlusSelects) {
   meshlode_close(asset);
 }
 
-/// Each thread goes through all promises, so that at any time several are in use; the sanitizers see a race.
+/// Each thread goes through all promises, so that at any time several are in use.
 TEST(ApiPromise, ThreadsSelectByDifferentOnesOfOneAsset) {
   const auto asset = AssetFile::view(promised_ball());
   ASSERT_TRUE(asset.ok());

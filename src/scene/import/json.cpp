@@ -59,7 +59,7 @@ std::vector<std::uint32_t> count_items(std::string_view text) {
 /// Receives the parser's events and builds the tree.
 class TreeBuilder : public nlohmann::json_sax<nlohmann::json> {
  public:
-  explicit TreeBuilder(std::string_view text) : text_bytes_(text.size()), counts_(count_items(text)) {}
+  explicit TreeBuilder(std::string_view text) : unclaimed_(text.size()), counts_(count_items(text)) {}
 
   bool null() override { return put(Json{}) != nullptr; }
   bool boolean(bool flag) override { return put(Json{flag}) != nullptr; }
@@ -118,17 +118,20 @@ class TreeBuilder : public nlohmann::json_sax<nlohmann::json> {
       problem = "values nested deeper than " + std::to_string(kMaxJsonDepth);
       return false;
     }
-    // An item is "0," and a member "\"\":0," at least: text that is not JSON gets no more memory than text that is.
+    // An item is "0," and a member "\"\":0," at least, and no two share a byte: text that is not JSON gets no more
+    // memory than text that is, however it is nested.
     constexpr std::size_t kLeastBytes = std::is_same_v<List, Json::Object> ? 5 : 2;
     if (opened_ < counts_.size()) {
-      list.reserve(std::min<std::size_t>(counts_[opened_++], text_bytes_ / kLeastBytes + 1));
+      const std::size_t count = std::min<std::size_t>(counts_[opened_++], unclaimed_ / kLeastBytes + 1);
+      unclaimed_ -= std::min(unclaimed_, count * kLeastBytes);
+      list.reserve(count);
     }
     // A container's address is stable while it is open: only the innermost one grows.
     open_.push_back(put(Json{std::move(list)}));
     return true;
   }
 
-  std::size_t text_bytes_;
+  std::size_t unclaimed_;  ///< bytes of the text that no item was counted for
   std::vector<std::uint32_t> counts_;
   std::size_t opened_ = 0;  ///< containers so far: the place in counts_
   std::vector<Json*> open_;

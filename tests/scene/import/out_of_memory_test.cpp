@@ -222,6 +222,10 @@ TEST(Memory, OfADocumentIsAtMost16BytesPerByteOfText) {
     const std::string text = start + std::string(2'000'000, ',');
     EXPECT_LE(bytes_per_byte(text, [&] { EXPECT_FALSE(scene::parse_json(text)); }), 16.0) << start;
   }
+  std::string nests;
+  for (int depth = 0; depth < 5; ++depth) nests += "{\"a\":";
+  for (int depth = 0; depth < 5; ++depth) nests += std::string(400'000, ',') + '}';
+  EXPECT_LE(bytes_per_byte(nests, [&] { EXPECT_FALSE(scene::parse_json(nests)); }), 16.0);
 }
 
 TEST(OutOfMemory, ACopyOfADocumentIsUndone) {
