@@ -2,6 +2,7 @@
 #include "builder/needs.h"
 
 #include <algorithm>
+#include <array>
 #include <string>
 #include <vector>
 
@@ -18,7 +19,8 @@ namespace {
 
 // Bytes, measured over the models of docs/log/build-time.md: of the program, of a thread, of each byte of the scene's
 // document while it is read, of what is kept of a mesh when it is done; and while it is in work of a triangle, of a
-// position (a closed surface has half as many as triangles, loose cards twice as many) and of a vertex's attributes.
+// position (a closed surface has half as many as triangles, loose cards twice as many), of a wedge beside its
+// position's first (seams; split at every corner five for each position) and of a vertex's attributes.
 constexpr std::uint64_t kProcess = 22u << 20u;
 constexpr std::uint64_t kThread = 3u << 20u;
 constexpr std::uint64_t kDocumentByte = 40;
@@ -32,6 +34,7 @@ constexpr std::uint64_t kAggregate = 12u << 20u;
 constexpr std::uint64_t kTriangleOfAggregate = 50;
 constexpr std::uint64_t kPosition = 230;
 constexpr std::uint64_t kPositionOfQuadric = 180;
+constexpr std::uint64_t kFurtherWedge = 60;
 constexpr std::uint64_t kVertexFloat = 8;
 
 template <class T>
@@ -46,17 +49,20 @@ std::uint64_t bytes_of(const scene::Primitive& primitive) {
   return sum;
 }
 
-/// Floats of a vertex beside its position, as many as may be kept.
-std::uint64_t attribute_floats(const scene::SourceMesh& mesh, const MeshOptions& options) {
-  if (options.attributes == AttributeChoice::kNone && options.keep == 0) return 0;
-  std::uint64_t floats = 0;
+/// What may be kept of a vertex beside its position.
+AttributeLayout largest_layout(const scene::SourceMesh& mesh, const MeshOptions& options) {
+  AttributeLayout layout;
+  if (options.attributes == AttributeChoice::kNone && options.keep == 0) return layout;
+  std::array<bool, scene::kMaxUvSets> has_set{};
   for (const scene::Primitive& primitive : mesh.primitives) {
-    std::uint64_t own = primitive.normals.empty() ? 0 : 3;
-    for (const auto& uvs : primitive.uvs) own += uvs.empty() ? 0 : 2;
-    own += primitive.colors.empty() ? 0 : 4;
-    floats = std::max(floats, own);
+    layout.has_normal = layout.has_normal || !primitive.normals.empty();
+    layout.has_color = layout.has_color || !primitive.colors.empty();
+    for (std::size_t set = 0; set < has_set.size(); ++set) has_set[set] = has_set[set] || !primitive.uvs[set].empty();
   }
-  return floats;
+  for (std::size_t set = 0; set < has_set.size(); ++set) {
+    if (has_set[set]) layout.uv_set_source[layout.uv_set_count++] = static_cast<std::uint8_t>(set);
+  }
+  return layout;
 }
 
 /// What is needed, for what, and what to do.
@@ -125,9 +131,12 @@ MemoryEstimate estimate_memory(const scene::Scene& scene, const PipelineOptions&
     estimate.always += kKeptTriangle * counts.triangles;
     const std::uint64_t promised = options.promise == format::Promise::kPosition ? 0 : kTrianglePromised;
     const std::uint64_t held = is_measured && counts.triangles <= kMostHeldTriangles ? kTriangleHeld : 0;
+    const AttributeLayout layout = largest_layout(mesh, own);
+    const std::uint64_t positions = count_wedges(mesh, {});
+    const std::uint64_t wedges = layout.stride() == 0 ? positions : std::max(positions, count_wedges(mesh, layout));
     std::uint64_t bytes = ((is_certified ? kTriangleOfCertified : kTriangle) + held + promised) * counts.triangles +
-                          (is_measured ? kPosition : kPositionOfQuadric) * count_wedges(mesh, {}) +
-                          kVertexFloat * attribute_floats(mesh, own) * counts.vertices;
+                          (is_measured ? kPosition : kPositionOfQuadric) * positions +
+                          kFurtherWedge * (wedges - positions) + kVertexFloat * layout.stride() * counts.vertices;
     const bool is_aggregate = i < aggregates.size() && aggregates[i].is_aggregate;
     if (is_aggregate) bytes += kAggregate + kTriangleOfAggregate * counts.triangles;
     estimate.working.push_back({bytes, i});

@@ -195,6 +195,25 @@ scene::Scene unshared(scene::Scene scene) {
   return scene;
 }
 
+/// Texture coordinates that no two triangles share.
+scene::Scene split(scene::Scene scene) {
+  for (scene::SourceMesh& mesh : scene.meshes) {
+    for (scene::Primitive& primitive : mesh.primitives) {
+      scene::Primitive apart;
+      apart.material = primitive.material;
+      for (const std::uint32_t index : primitive.indices) {
+        const auto corner = static_cast<std::uint32_t>(apart.positions.size());
+        apart.indices.push_back(corner);
+        apart.positions.push_back(primitive.positions[index]);
+        apart.uvs[0].emplace_back(static_cast<float>(std::sin(1.7 * corner)),
+                                  static_cast<float>(std::cos(2.3 * corner)));
+      }
+      primitive = std::move(apart);
+    }
+  }
+  return scene;
+}
+
 struct Measured {
   std::uint64_t estimate = 0, peak = 0;  ///< bytes
 };
@@ -274,6 +293,9 @@ TEST(NeedsDeathTest, MemoryIsEstimatedFromAboveAndCloseEnough) {
   expect_close(measure([] { return loose(20000); }, kMeasured, 1), "20,000 loose triangles");
   expect_close(measure([] { return unshared(sheets(120, 1, false)); }, kMeasured, 1),
                "28,800 triangles, no vertex shared");
+  for (const format::ErrorTier tier : {kQem, kMeasured, kCertified}) {
+    expect_close(measure([] { return split(sheets(200, 1, true)); }, tier, 1), "80,000 triangles, each a chart");
+  }
   expect_close(measure([] { return loose(400); }, kMeasured, 2, AggregateChoice::kAlways), "an aggregate of 400");
   expect_close(measure([] { return loose(4000, 0.003); }, kMeasured, 2, AggregateChoice::kAlways), "of 4,000 crumbs");
   expect_close(measure([] { return loose(4000, 0.0005); }, kMeasured, 2, AggregateChoice::kAlways), "of tiny ones");

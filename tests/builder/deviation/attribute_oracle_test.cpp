@@ -80,17 +80,29 @@ std::pair<std::size_t, Shares> below(const ShadedSurface& source, const Long3& p
   return {};
 }
 
+/// Point `number` of the sequence R2 (Roberts 2018), folded into the triangle: of a step in each direction 1/g and
+/// 1/g^2 with g^3 = g + 1.
+Shares sequence(std::uint32_t number) {
+  long double g = 1.3L;
+  for (int turn = 0; turn < 20; ++turn) g -= (g * g * g - g - 1.0L) / (3.0L * g * g - 1.0L);
+  long double whole = 0.0L;
+  const long double b = std::modf(0.5L + number / g, &whole), c = std::modf(0.5L + number / (g * g), &whole);
+  return b + c <= 1.0L ? Shares{1.0L - b - c, b, c} : Shares{b + c - 1.0L, 1.0L - b, 1.0L - c};
+}
+
 AttributeDeviation expected_deviation(const ShadedSurface& source, const ShadedSurface& group) {
-  std::vector<SurfacePart> parts;
-  for (std::uint32_t t = 0; t < group.triangles.size(); ++t) {
+  std::vector<long double> end;  // of the triangles, by area from the first one on
+  for (std::size_t t = 0; t < group.triangles.size(); ++t) {
     const Long3 cross = glm::cross(group.at(t, 1) - group.at(t, 0), group.at(t, 2) - group.at(t, 0));
-    parts.push_back({t, kNoId, static_cast<double>(std::sqrt(glm::dot(cross, cross)))});
+    end.push_back((end.empty() ? 0.0L : end.back()) + std::sqrt(glm::dot(cross, cross)));
   }
   long double total = 0.0L, chords2 = 0.0L;
   std::array<std::vector<std::pair<long double, long double>>, 2> uv_errors;
-  for (const auto& [t, number, area] : spread_points(parts, kPointsForUvs)) {
-    const std::array<double, 3> shares = shares_of(number);
-    const Shares w{shares[0], shares[1], shares[2]};
+  for (std::uint32_t number = 0; number < kPointsForUvs; ++number) {
+    // In the middle of one of as many equal parts.
+    const long double area = end.back() / kPointsForUvs, here = area * (number + 0.5L);
+    const auto t = static_cast<std::size_t>(std::lower_bound(end.begin(), end.end(), here) - end.begin());
+    const Shares w = sequence(number);
     const auto [at, there] = below(source, group.at(t, 0) * w[0] + group.at(t, 1) * w[1] + group.at(t, 2) * w[2]);
     const Long3 chord = group.normal(t, w) - source.normal(at, there);
     total += area;
