@@ -3,7 +3,6 @@
 // is the reference, which V212 judges. The same frame culled by the view volume, which decides what is loaded, is held
 // to that: what it leaves out is not seen.
 #include <algorithm>
-#include <cmath>
 #include <string>
 
 #include "base/random.h"
@@ -11,6 +10,7 @@
 #include "draw/gpu/gpu_camera.h"
 #include "draw/gpu/page_pool.h"
 #include "judge/gpu/compare_frame.h"
+#include "judge/gpu/stream_requests.h"
 #include "judge/gpu/verify_gpu.h"
 #include "judge/verify/judged_view.h"
 #include "run/select/resident.h"
@@ -19,24 +19,8 @@ namespace meshlode::judge {
 
 namespace {
 
-/// A device's division and square root are not exact, and the distance to a near sphere is what two floats leave that
-/// are nearly equal.
-constexpr double kPriorityDifference = 0.01;
 /// Of the picture that pixel errors are of: the usual one.
 constexpr double kLines = 1080.0;
-
-/// Which pages are wanted, and by how much, in pixels.
-std::string compare_priorities(std::span<const float> device, std::span<const float> host, double pixel_error) {
-  for (std::size_t page = 0; page < device.size(); ++page) {
-    const double got = double{device[page]} * (device[page] < format::kInfiniteError ? pixel_error : 1.0);
-    const double want = page < host.size() ? double{host[page]} : 0.0;
-    // Without an error allowed the device has no measure, and the CPU goes by one pixel.
-    if (pixel_error == 0.0 && (device[page] > 0.0F) == (want > 0.0)) continue;
-    if (std::fabs(got - want) <= kPriorityDifference * want) continue;
-    return differs(place("page", page) + ": the device asks by", got, "the CPU by", want);
-  }
-  return {};
-}
 
 Result<std::string> compare_picture(draw::Renderer& renderer, const run::Asset& asset, const run::Camera& camera,
                                     std::span<const run::ClusterInstance> cut,
@@ -54,7 +38,7 @@ Result<std::string> judge_frame(draw::Renderer& renderer, const run::Asset& asse
   if (!std::equal(cut->begin(), cut->end(), expected.begin(), expected.end())) {
     return std::to_string(cut->size()) + " clusters are drawn, " + std::to_string(expected.size()) + " by the CPU";
   }
-  if (std::string text = compare_priorities(priorities, selector.page_priorities(), pixel_error); !text.empty()) {
+  if (std::string text = find_priority_fault(priorities, selector.page_priorities(), pixel_error); !text.empty()) {
     return text;
   }
   return compare_picture(renderer, asset, camera, *cut, expected);
@@ -66,25 +50,17 @@ Result<std::string> judge_culled(draw::Renderer& renderer, const run::Asset& ass
                                  double pixel_error, std::span<const float> priorities, std::span<const float> all,
                                  std::span<const run::ClusterInstance> expected) {
   TRY_LET(cut, renderer.read_cut());
-  if (!std::includes(expected.begin(), expected.end(), cut->begin(), cut->end())) {
-    return std::string("culled, a cluster is drawn that is not of the cut");
-  }
+  if (std::string text = find_culled_fault({*cut, priorities}, {expected, all}); !text.empty()) return text;
   const bool is_same_cut = cut->size() == expected.size();
   if (is_same_cut && std::equal(all.begin(), all.end(), priorities.begin())) return std::string();
-  for (std::size_t page = 0; page < all.size(); ++page) {
-    if (priorities[page] <= all[page]) continue;
-    return differs(place("page", page) + ": culled, the device asks by", double{priorities[page]}, "else by",
-                   double{all[page]});
-  }
   const std::vector<run::ClusterInstance> whole = run::select_flat(asset, camera, pixel_error);
-  TRY_LET(seen, draw::draw_cut(asset, whole, camera, *renderer.scene().alpha_masks));
-  for (const std::uint32_t item : seen->item) {
+  TRY_LET(picture, draw::draw_cut(asset, whole, camera, *renderer.scene().alpha_masks));
+  std::vector<std::uint32_t> seen;
+  for (const std::uint32_t item : picture->item) {
     if (item == draw::VisibilityBuffer::kNothing) continue;
-    const format::ClusterRecord& cluster = asset.clusters()[whole[item].cluster.value];
-    const std::uint32_t page = asset.groups()[cluster.coarser_group].page;
-    if (!(priorities[page] > 0.0F))
-      return place("page", page) + " would be seen, and culled the device does not ask for it";
+    seen.push_back(asset.groups()[asset.clusters()[whole[item].cluster.value].coarser_group].page);
   }
+  if (std::string text = find_unasked_page(priorities, seen); !text.empty()) return text;
   return is_same_cut ? std::string() : compare_picture(renderer, asset, camera, *cut, expected);
 }
 
