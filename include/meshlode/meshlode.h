@@ -446,9 +446,9 @@ MESHLODE_API meshlode_status meshlode_select_uniform(const meshlode_asset* asset
 /** The page that holds a cluster; MESHLODE_NONE if there is no such cluster. */
 MESHLODE_API uint32_t meshlode_page_of(const meshlode_asset* asset, uint32_t cluster);
 
-/** Pages that hold the coarser replacements of this page's groups: all of the same mesh, all with smaller ids,
- * ascending,
- * `*count` of them. Load them first: then this page can be dropped at any time, and the renderer falls back to them. */
+/** Pages that hold the coarser replacements of this page's groups: `*count` of them, ascending, all of the same mesh
+ * and with smaller ids. Load them first: then this page can be dropped at any time, and the renderer falls back to
+ * them. */
 MESHLODE_API const uint32_t* meshlode_page_dependencies(const meshlode_asset* asset, uint32_t page, uint32_t* count);
 
 /** An order in which to load all pages: each page comes after those that it depends on, and pages with the largest
@@ -469,8 +469,8 @@ typedef struct meshlode_hint {
 } meshlode_hint;
 
 /** The hint of a page; zeros if there is no such page. Derived from the groups, with the errors of positions: a view
- * that promises more may want the page earlier;
- * `meshlode build --page-hints` stores the same in the file, for readers that do not read groups at once. */
+ * that promises more may want the page earlier. `meshlode build --page-hints` stores the same in the file, for readers
+ * that do not read groups at once. */
 MESHLODE_API meshlode_hint meshlode_page_hint(const meshlode_asset* asset, uint32_t page);
 
 /** What to read before the first picture: the pages without which nothing is drawn, those that hold a terminal group of

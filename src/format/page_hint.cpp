@@ -5,18 +5,9 @@
 #include <cmath>
 #include <limits>
 
+#include "base/float_above.h"
+
 namespace meshlode::format {
-
-namespace {
-
-/// The next float at or above a length; kInfiniteError where there is none.
-float round_up(double length) {
-  if (!(length < double{kInfiniteError})) return kInfiniteError;
-  const auto nearest = static_cast<float>(length);
-  return double{nearest} < length ? std::nextafter(nearest, kInfiniteError) : nearest;
-}
-
-}  // namespace
 
 PageHintRecord make_page_hint(std::span<const GroupRecord> groups) {
   PageHintRecord hint{};
@@ -38,7 +29,7 @@ PageHintRecord make_page_hint(std::span<const GroupRecord> groups) {
     reach = std::max(reach, std::sqrt(square) + double{group.radius});
   }
   // A dozen roundings, each by 2^-53: with this the sphere contains the others exactly.
-  hint.radius = round_up(reach * (1.0 + 0x1p-40));
+  hint.radius = float_above(reach * (1.0 + 0x1p-40));
   const auto [least, most] = std::minmax_element(
       groups.begin(), groups.end(), [](const GroupRecord& a, const GroupRecord& b) { return a.error < b.error; });
   hint.smallest_error = least->error;

@@ -220,9 +220,8 @@ export interface Asset {
   pageDependencies(page: number): Uint32Array;
   streamingOrder(promise?: PromiseKind): Uint32Array;
   /**
-   * Ranges to read before the first picture, ascending: the pages of terminal groups of meshes with an
-   * instance that is not singular. Pages with at most
-   * `maxGap` bytes between them share a range, and neighbours always do.
+   * Ranges to read before the first picture, ascending: the pages of terminal groups of meshes with an instance that is not singular.
+   * Pages with at most `maxGap` bytes between them share a range, and neighbours always do.
    */
   firstRanges(maxGap?: number): { offset: number; bytes: number }[];
   /** Errors: invalid, where the page is broken; unsupported, where its codec is not none or strips. */

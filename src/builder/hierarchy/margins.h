@@ -9,6 +9,7 @@
 
 #include <meshlode/format.h>
 
+#include "base/float_above.h"
 #include "base/vec.h"
 #include "builder/hierarchy/hierarchy.h"
 
@@ -20,13 +21,6 @@ constexpr double kErrorGrowth = 0x1p-18;      ///< 64u, from a finer error to a 
 constexpr double kDoubleSlack = 0x1p-48;      ///< more than the rounding of the double formulas here
 constexpr float kMinStoredError = 0x1p-100F;  ///< smaller errors are raised to it: no decision rests on a denormal
 constexpr float kMaxStoredError = 0x1p120F;   ///< larger finite errors are lowered to it, to stay below infinite
-
-/// The smallest float that is not below `value`; kInfiniteError at most. \pre value >= 0 or NaN (kInfiniteError then)
-[[nodiscard]] inline float float_above(double value) {
-  if (!(value < double{format::kInfiniteError})) return format::kInfiniteError;
-  const float nearest = static_cast<float>(value);
-  return double{nearest} < value ? std::nextafter(nearest, format::kInfiniteError) : nearest;
-}
 
 /// sqrt(x·x + y·y + z·z) in one order of operations.
 [[nodiscard]] inline double length_of(const Vec3d& v) {

@@ -16,7 +16,8 @@ namespace meshlode::judge {
 [[nodiscard]] std::string find_priority_fault(std::span<const float> device, std::span<const float> host,
                                               double pixel_error);
 
-/// A frame, culled by the view volume, against the same one that is not. "": nothing else is drawn or asked for by more.
+/// A frame, culled by the view volume, against the same one that is not. "": nothing else is drawn or asked for by
+/// more.
 struct DrawnFrame {
   std::span<const run::ClusterInstance> cut;  ///< ascending
   std::span<const float> priorities;

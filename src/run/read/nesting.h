@@ -7,6 +7,8 @@
 
 #include <meshlode/format.h>
 
+#include "base/float_above.h"
+
 namespace meshlode::run {
 
 /// Relative part: both radii may be off by this much.
@@ -58,10 +60,7 @@ struct StoredBound {
 /// The smallest float above `inner` by the growth: an error that is nested over it and over every smaller one. 0 stays
 /// 0, since errors of 0 pass for every camera; infinite where no finite float is above. \pre not negative, not NaN
 [[nodiscard]] inline float coarser_error(float inner) {
-  const double grown = double{inner} * (1.0 + kNestingErrorGrowth);
-  if (!(grown < double{format::kInfiniteError})) return format::kInfiniteError;
-  const float nearest = static_cast<float>(grown);
-  return double{nearest} < grown ? std::nextafter(nearest, format::kInfiniteError) : nearest;
+  return float_above(double{inner} * (1.0 + kNestingErrorGrowth));
 }
 
 /// \pre for bounds that are not the same bits: a sphere is not nested in itself, though its rule agrees with itself.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/float_above.h"
 #include "run/select/select.h"
 
 namespace meshlode::run {
@@ -15,12 +16,6 @@ constexpr double kMaxNear = 0x1p61;  // below METRIC_ERROR_CAP: a capped error n
 constexpr double kMaxFactor = 0x1p126;
 constexpr double kMinFactor = 0x1p-126;  // the smallest normal float
 constexpr int kScaledExponent = 30;      // the largest scaled length lies in [2^29, 2^30)
-
-// The smallest float that is not below `value`. \pre 0 <= value <= FLT_MAX
-float float_above(double value) {
-  const float nearest = static_cast<float>(value);
-  return double{nearest} < value ? std::nextafter(nearest, format::kInfiniteError) : nearest;
-}
 
 // NaN becomes `high`: an error scale that makes no sense lets nothing pass but errors of 0.
 double clamp_or_high(double value, double low, double high) {

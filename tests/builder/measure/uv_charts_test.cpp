@@ -51,8 +51,7 @@ struct Charted {
       }
     }
   }
-  static ChartsOf by_triangle(const UvCharts& charts, std::size_t count,
-                                                             std::size_t first) {
+  static ChartsOf by_triangle(const UvCharts& charts, std::size_t count, std::size_t first) {
     ChartsOf out(count);
     for (std::size_t i = 0; i < 3 * count; ++i) out[i / 3].push_back(charts.of_vertex()[first + i]);
     return out;
@@ -81,8 +80,7 @@ TEST(UvCharts, HangTogetherByPlaceAndTextureCoordinates) {
   const Soup pair = both(square(0.0), square(1.0));
   EXPECT_EQ(Charted(pair, apart_from(4), {}, {}).before, (ChartsOf{kZero, kZero, kZero, kZero}));
   EXPECT_EQ(Charted(pair, apart_from(2), {}, {}).before, (ChartsOf{kZero, kZero, kOne, kOne})) << "a seam";
-  EXPECT_EQ(Charted(both(square(0.0), square(3.0)), apart_from(4), {}, {}).before,
-            (ChartsOf{kZero, kZero, kOne, kOne}))
+  EXPECT_EQ(Charted(both(square(0.0), square(3.0)), apart_from(4), {}, {}).before, (ChartsOf{kZero, kZero, kOne, kOne}))
       << "another place";
 }
 
@@ -111,9 +109,8 @@ TEST(UvCharts, WhatKeepsAVertexKeepsItsChart) {
   // Two sheets above one another. What is left of each is a triangle with one corner of its own sheet, and its texture.
   const Soup sheets = both(square(0.0), square(0.0, 0.25));
   const Vec3d a(0.0), b(0.5, 0.0, 0.0), c(0.5, 0.0, 0.5), up(0.0, 0.25, 0.0);
-  const Charted charted(sheets, apart_from(2), {{a + up, b + up, c + up}, {a, b, c}}, [](auto t, auto, const Vec3d& p) {
-    return plain(p, t == 0 ? 10.0 : 0.0);
-  });
+  const Charted charted(sheets, apart_from(2), {{a + up, b + up, c + up}, {a, b, c}},
+                        [](auto t, auto, const Vec3d& p) { return plain(p, t == 0 ? 10.0 : 0.0); });
   EXPECT_EQ(charted.after, (ChartsOf{kOne, kZero}));
 }
 
@@ -137,8 +134,7 @@ TEST(UvCharts, WhereChartsMeetMostVerticesDecide) {
   const Uvs other = [](std::size_t, std::size_t k, const Vec3d& p) { return plain(p, k == 2 ? 10.0 : 0.0); };
   EXPECT_EQ(Charted(pair, apart_from(2), {{left, Vec3d(1.0, 0.0, 0.0), far}}, other).after, (ChartsOf{kZero}));
   const Uvs tied = [](std::size_t, std::size_t k, const Vec3d& p) { return plain(p, std::array{0.0, 10.0, 0.5}[k]); };
-  EXPECT_EQ(Charted(pair, apart_from(2), {{left, right, Vec3d(1.0, 0.5, 0.0)}}, tied).after,
-            (ChartsOf{kZero}))
+  EXPECT_EQ(Charted(pair, apart_from(2), {{left, right, Vec3d(1.0, 0.5, 0.0)}}, tied).after, (ChartsOf{kZero}))
       << "as many of each: the first";
 }
 
