@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "base/ids.h"
 #include "base/random.h"
 #include "base/vec.h"
 
@@ -55,15 +56,15 @@ class IdTable {
     return {next, true};
   }
 
-  /// The id that `is_same` accepts, or kNone. Side by side with itself.
+  /// The id that `is_same` accepts, or kNoId. Side by side with itself.
   template <class IsSame>
   [[nodiscard]] std::uint32_t find(std::uint64_t hash, const IsSame& is_same) const {
-    if (slots_.empty()) return kNone;
+    if (slots_.empty()) return kNoId;
     const std::size_t size = slots_.size();
     for (std::size_t at = first_slot(hash, size); slots_[at] != kFree; at = next_slot(at, size)) {
       if (const std::uint32_t id = slots_[at]; is_same(id)) return id;
     }
-    return kNone;
+    return kNoId;
   }
 
   /// Tells the processor that the slot of this hash will be asked for soon: tables are larger than its caches.
@@ -91,8 +92,6 @@ class IdTable {
   }
 
   [[nodiscard]] std::size_t size() const { return count_; }
-
-  static constexpr std::uint32_t kNone = 0xFFFFFFFFU;
 
  private:
   static constexpr std::uint32_t kFree = 0xFFFFFFFFU;

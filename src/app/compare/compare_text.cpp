@@ -11,7 +11,7 @@ namespace meshlode::app {
 
 namespace {
 
-constexpr std::size_t kMaxRows = 40;  ///< of each list: a city has thousands; JSON lists all
+constexpr std::size_t kMaxDifferences = 40;  ///< of each list: a city has thousands; JSON lists all
 
 std::string number_text(const std::optional<double>& number, Change::Kind kind) {
   if (!number) return "-";
@@ -52,8 +52,9 @@ std::string rows_of(const std::string& prefix, const std::vector<Change>& change
   return rows;
 }
 
-void add_more(std::string& out, std::size_t total, const char* what) {
-  if (total > kMaxRows) append_format(out, "  … and %zu more %s (--format json lists all)\n", total - kMaxRows, what);
+void add_more_differences(std::string& out, std::size_t total, const char* what) {
+  if (total > kMaxDifferences)
+    append_format(out, "  … and %zu more %s (--format json lists all)\n", total - kMaxDifferences, what);
 }
 
 std::string pair_text(const EntryPair& pair) {
@@ -62,19 +63,19 @@ std::string pair_text(const EntryPair& pair) {
 }
 
 void add_one_sided(std::string& rows, const char* word, const std::vector<OneSided>& entries) {
-  for (std::size_t i = 0; i < entries.size() && i < kMaxRows; ++i) {
+  for (std::size_t i = 0; i < entries.size() && i < kMaxDifferences; ++i) {
     append_format(rows, "  %s: %u  %s\n", word, entries[i].index, printable(entries[i].name).c_str());
   }
-  add_more(rows, entries.size(), word);
+  add_more_differences(rows, entries.size(), word);
 }
 
 void add_settings(std::string& out, const std::vector<SettingChange>& settings) {
   std::string rows;
-  for (std::size_t i = 0; i < settings.size() && i < kMaxRows; ++i) {
+  for (std::size_t i = 0; i < settings.size() && i < kMaxDifferences; ++i) {
     append_format(rows, "  %-29s %s -> %s\n", printable(settings[i].key, 32).c_str(),
                   printable(settings[i].before, 160).c_str(), printable(settings[i].after, 160).c_str());
   }
-  add_more(rows, settings.size(), "settings");
+  add_more_differences(rows, settings.size(), "settings");
   add_rows(out, "\nsettings", rows);
 }
 
@@ -85,16 +86,16 @@ void add_meshes(std::string& out, const AssetComparison& comparison) {
     for (const LevelChange& level : mesh.levels) {
       rows += rows_of("level " + std::to_string(level.level) + " ", level.changes);
     }
-    if (!rows.empty() && shown++ < kMaxRows) add_rows(out, "\nmesh " + pair_text(mesh.mesh), rows);
+    if (!rows.empty() && shown++ < kMaxDifferences) add_rows(out, "\nmesh " + pair_text(mesh.mesh), rows);
   }
-  add_more(out, shown, "meshes that differ");
+  add_more_differences(out, shown, "meshes that differ");
   std::string rows;
   std::size_t renamed = 0;
   for (const MeshChange& mesh : comparison.meshes) {
     if (mesh.mesh.old_name == mesh.mesh.new_name) continue;
-    if (renamed++ < kMaxRows) rows += "  renamed: " + pair_text(mesh.mesh) + "\n";
+    if (renamed++ < kMaxDifferences) rows += "  renamed: " + pair_text(mesh.mesh) + "\n";
   }
-  add_more(rows, renamed, "renamed");
+  add_more_differences(rows, renamed, "renamed");
   add_one_sided(rows, "added", comparison.meshes_added);
   add_one_sided(rows, "removed", comparison.meshes_removed);
   add_rows(out, "\nmeshes", rows);
@@ -102,13 +103,13 @@ void add_meshes(std::string& out, const AssetComparison& comparison) {
 
 void add_list(std::string& out, const char* heading, const ListChange& list) {
   std::string rows;
-  for (std::size_t i = 0; i < list.changed.size() && i < kMaxRows; ++i) {
+  for (std::size_t i = 0; i < list.changed.size() && i < kMaxDifferences; ++i) {
     const ListChange::Entry& entry = list.changed[i];
     std::string what;
     for (const std::string& member : entry.what) what += (what.empty() ? "" : ", ") + printable(member, 40);
     rows += "  changed: " + pair_text(entry.entry) + ": " + printable(what, 200) + "\n";
   }
-  add_more(rows, list.changed.size(), "changed");
+  add_more_differences(rows, list.changed.size(), "changed");
   add_one_sided(rows, "added", list.added);
   add_one_sided(rows, "removed", list.removed);
   add_rows(out, heading, rows);

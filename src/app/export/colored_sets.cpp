@@ -7,13 +7,13 @@
 #include "app/export/cut_geometry.h"
 #include "app/export/float_positions.h"
 #include "app/export/glb_file.h"
+#include "app/export/packing.h"
 #include "base/json_writer.h"
 #include "base/try.h"
 
 namespace meshlode::app {
 namespace {
 
-constexpr int kFloat = 5126, kUnsignedInt = 5125;
 constexpr int kArrayBuffer = 34962, kElementArrayBuffer = 34963;
 
 /// Two buffer views and two accessors: positions, then indices.

@@ -12,24 +12,22 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "app/export/attach_meshes.h"
+#include "app/export/carry_contents.h"
 #include "app/export/cut_geometry.h"
 #include "app/export/float_positions.h"
 #include "app/export/glb_file.h"
 #include "app/export/gltf_document.h"
-#include "app/export/sniff.h"
 #include "app/export/write_primitive.h"
 #include "app/report/read_meta.h"
 #include "base/guarded.h"
-#include "base/hash.h"
 #include "base/json_handle.h"
 #include "base/try.h"
-#include "format/names.h"
 
 namespace meshlode::app {
 namespace {
@@ -42,15 +40,6 @@ constexpr std::size_t kMaxDepth = 200;  // of JSON nesting: copying and writing 
 constexpr std::array<std::string_view, 5> kGeometryExtensions = {"EXT_mesh_gpu_instancing", "EXT_meshopt_compression",
                                                                  "KHR_meshopt_compression",
                                                                  "KHR_draco_mesh_compression", "KHR_mesh_quantization"};
-
-struct ExportedMesh {
-  std::vector<std::uint32_t> levels;  ///< indices in the glTF, the finest first; empty without primitives
-  Vec3d translation{0.0};             ///< of a node to put around it
-  double step = 0.0;                  ///< its scale, where positions are quantized; else 0
-  std::string name;
-  std::vector<double> screen_coverage;
-  [[nodiscard]] bool is_moved() const { return step > 0.0 || translation != Vec3d(0.0); }
-};
 
 /// A mesh of the asset in an exported one: the mesh itself, or a part of it that the asset has as a mesh of its own.
 struct Member {
@@ -79,25 +68,6 @@ std::vector<double> join_coverage(std::span<const Member> members, std::size_t l
   return joined;
 }
 
-/// Whether each of these members is an array, where it is there.
-Status check_arrays(const Json& object, std::initializer_list<const char*> keys) {
-  for (const char* key : keys) {
-    const auto it = object.find(key);
-    if (it != object.end() && !it->is_null() && !it->is_array())
-      return malformed(std::string("/") + key + " is not an array");
-  }
-  return Ok{};
-}
-
-std::string level_name(const std::string& name, std::size_t level) {
-  return name + " (level " + std::to_string(level) + ")";
-}
-
-/// Nothing but a name: no transform, no children, nothing that something else could replace.
-bool is_plain_node(const Json& node) {
-  return node.size() == node.count("name");
-}
-
 class Exporter {
  public:
   Exporter(const run::Asset& asset, std::span<const LodChain> chains, Packing packing)
@@ -111,18 +81,7 @@ class Exporter {
   Status place_mesh(std::span<const Member> members, ExportedMesh& exported) const;
   Status add_primitives(const Member& member, const Json* source, std::span<CutPrimitive> primitives,
                         const ExportedMesh& exported, Json& json);
-  Status carry_buffers();
-  Status carry_images();
-  void move_texture_sources();
-  void use_extension(const char* name, bool is_required);
-  Status complete_materials();
-  Status make_instance_nodes();
-  Status attach_meshes();
-  Status attach_mesh(std::size_t node);
-  void attach_levels(std::size_t node, const ExportedMesh& mesh);
-  void finish_document();
-  Result<GlbBinary::Range> carry_blob(const format::BlobRecord& blob);
-  [[nodiscard]] Result<const format::BlobRecord*> blob_of(const Json& owner) const;
+  void finish_document(bool has_lods);
 
   const run::Asset& asset_;
   std::span<const LodChain> chains_;
@@ -134,137 +93,7 @@ class Exporter {
   std::map<double, double> steps_;  ///< of quantized positions, by the step of a mesh's grid
   GlbBinary binary_;
   PrimitiveWriter primitives_{asset_, document_, binary_, packing_};
-  std::map<std::pair<std::uint64_t, std::uint64_t>, GlbBinary::Range> carried_;  ///< blobs in it, by offset and bytes
-  bool has_lods_ = false;
 };
-
-/// The blob that a document entry names with its member "blob".
-Result<const format::BlobRecord*> Exporter::blob_of(const Json& owner) const {
-  const auto index = owner.at("blob").get<std::uint64_t>();
-  if (index >= asset_.blobs().size()) return malformed("blob " + std::to_string(index) + " does not exist");
-  return &asset_.blobs()[index];
-}
-
-/// The bytes of a blob in the BIN chunk: once, however many entries of the document name it. Opening an asset does not
-/// look at them.
-Result<GlbBinary::Range> Exporter::carry_blob(const format::BlobRecord& blob) {
-  const auto [found, is_new] = carried_.try_emplace({blob.offset, blob.bytes});
-  if (!is_new) return found->second;
-  const std::span<const std::uint8_t> bytes = asset_.blob_bytes(blob);
-  if (hash64(bytes) != blob.checksum) {
-    const auto index = static_cast<std::size_t>(&blob - asset_.blobs().data());
-    return Error{ErrorCode::kInvalid, "blob " + std::to_string(index) + ", field checksum",
-                 "does not match the stored bytes"};
-  }
-  found->second = binary_.append(bytes);
-  return found->second;
-}
-
-/// The buffers of animations become stretches of the one BIN chunk; their views keep their indices.
-Status Exporter::carry_buffers() {
-  std::vector<GlbBinary::Range> ranges;
-  if (const auto buffers = document_.find("buffers"); buffers != document_.end()) {
-    for (const Json& buffer : *buffers) {
-      TRY_LET(blob, blob_of(buffer));
-      TRY_LET(range, carry_blob(**blob));
-      ranges.push_back(*range);
-    }
-    document_.erase("buffers");
-  }
-  if (!document_.contains("bufferViews")) return Ok{};
-  for (Json& view : array_of(document_, "bufferViews")) {
-    const auto buffer = view.at("buffer").get<std::size_t>();
-    if (buffer >= ranges.size()) return malformed("buffer " + std::to_string(buffer) + " does not exist");
-    const GlbBinary::Range range = ranges[buffer];
-    const auto offset = view.value("byteOffset", std::uint64_t{0});
-    const auto bytes = view.at("byteLength").get<std::uint64_t>();
-    if (offset > range.bytes || bytes > range.bytes - offset) return malformed("a view leaves its buffer");
-    view["buffer"] = 0;
-    view["byteOffset"] = range.offset + offset;
-  }
-  return Ok{};
-}
-
-Status Exporter::carry_images() {
-  if (!document_.contains("images")) return Ok{};
-  constexpr std::size_t kLongestName = 4096;  // a name that many images share must not be multiplied by them
-  for (Json& image : array_of(document_, "images")) {
-    if (!image.contains("blob")) continue;
-    TRY_LET(blob, blob_of(image));
-    const format::BlobRecord& record = **blob;
-    const std::span<const std::uint8_t> bytes = asset_.blob_bytes(record);
-    TRY_LET(range, carry_blob(record));
-    image["bufferView"] = add_view(document_, *range);
-    const std::string_view mime_type = asset_.string(record.mime_type);
-    // The record's is that of the stored bytes; the document has the source's.
-    const bool is_known = !mime_type.empty() && mime_type.size() <= kLongestName;
-    if (is_known || !image.contains("mimeType")) {
-      image["mimeType"] = is_known ? std::string(mime_type) : sniff_mime_type(bytes);
-    }
-    const std::string_view name = asset_.string(record.name);
-    if (!image.contains("name") && !name.empty() && name.size() <= kLongestName) image["name"] = std::string(name);
-    image.erase("blob");
-    image.erase("uri");
-  }
-  return Ok{};
-}
-
-void Exporter::use_extension(const char* name, bool is_required) {
-  for (const char* list : {"extensionsUsed", "extensionsRequired"}) {
-    if (!is_required && list == std::string_view("extensionsRequired")) continue;
-    Json& names = array_of(document_, list);
-    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
-  }
-}
-
-/// A texture's own source may be PNG or JPEG only. A source file that refers to others by a URI without a type gets
-/// away with more; inside a GLB each image has a type, and the other types have extensions to name them by.
-void Exporter::move_texture_sources() {
-  if (!document_.contains("textures")) return;
-  std::set<std::string_view> used;
-  for (Json& texture : array_of(document_, "textures")) {
-    const auto source = texture.find("source");
-    if (source == texture.end() || !source->is_number_unsigned()) continue;
-    const Json* image = find_element(document_, "images", source->get<std::size_t>());
-    if (image == nullptr || !image->is_object()) continue;
-    const Json type = image->value("mimeType", Json());
-    const char* extension = type == "image/ktx2"   ? "KHR_texture_basisu"
-                            : type == "image/webp" ? "EXT_texture_webp"
-                                                   : "";
-    if (*extension == 0) continue;
-    Json& named = texture["extensions"][extension];
-    if (named.is_null()) named = {{"source", *source}};
-    texture.erase("source");
-    used.insert(extension);
-  }
-  for (const std::string_view extension : used) use_extension(extension.data(), true);  // of literals
-}
-
-/// Assets that do not come from a glTF have no materials in their document: the records say what is known.
-Status Exporter::complete_materials() {
-  if (document_.contains("materials")) return Ok{};
-  std::map<std::uint32_t, Json> by_index;
-  for (const format::MaterialRecord& record : asset_.materials()) {
-    if (record.source_index == format::kNone) continue;
-    Json material = Json::object();
-    if (const auto name = asset_.string(record.name); !name.empty()) material["name"] = std::string(name);
-    Json factor = Json::array();
-    for (const float c : record.base_color) factor.push_back(c);
-    material["pbrMetallicRoughness"] = {{"baseColorFactor", factor}, {"metallicFactor", 0}};
-    if (record.alpha_mode != format::AlphaMode::kOpaque) material["alphaMode"] = format::name_of(record.alpha_mode);
-    if (record.alpha_mode == format::AlphaMode::kMask) material["alphaCutoff"] = record.alpha_cutoff;
-    if (record.double_sided != 0) material["doubleSided"] = true;
-    by_index.emplace(record.source_index, std::move(material));
-  }
-  // Indices without gaps are what the builder writes; a gap cannot be filled with anything true.
-  Json materials = Json::array();
-  for (auto& [index, material] : by_index) {
-    if (index != materials.size()) return malformed("material indices have a gap and there is no document");
-    materials.push_back(std::move(material));
-  }
-  if (!materials.empty()) document_["materials"] = std::move(materials);
-  return Ok{};
-}
 
 /// What the document has for the primitives of a mesh, by material (KHR_materials_variants); null: the default one.
 std::map<Json, const Json*> extensions_by_material(const Json* mesh) {
@@ -375,111 +204,7 @@ Status Exporter::add_mesh(std::size_t mesh, std::span<const MeshId> member_ids) 
   return Ok{};
 }
 
-/// No scene graph in the source (PLY, arrays in memory): one root node for each instance.
-Status Exporter::make_instance_nodes() {
-  Json nodes = Json::array();
-  Json roots = Json::array();
-  for (const format::InstanceRecord& instance : asset_.instances()) {
-    if (origins_[instance.mesh] != instance.mesh) continue;
-    Json node = {{"mesh", instance.mesh}};
-    if (const auto name = asset_.string(instance.name); !name.empty()) node["name"] = std::string(name);
-    Json matrix = Json::array();
-    bool is_identity = true;
-    for (std::size_t column = 0; column < 4; ++column) {
-      for (std::size_t row = 0; row < 4; ++row) {
-        const double value = row < 3 ? instance.transform[row * 4 + column] : (column == 3 ? 1.0 : 0.0);
-        if (!std::isfinite(value)) return malformed("an instance's transform is not finite");
-        is_identity = is_identity && value == (row == column ? 1.0 : 0.0);
-        matrix.push_back(value);
-      }
-    }
-    if (!is_identity) node["matrix"] = std::move(matrix);
-    roots.push_back(nodes.size());
-    nodes.push_back(std::move(node));
-  }
-  if (nodes.empty()) return Ok{};
-  document_["nodes"] = std::move(nodes);
-  document_["scenes"] = Json::array({{{"nodes", std::move(roots)}}});
-  document_["scene"] = 0;
-  return Ok{};
-}
-
-/// The coarser levels become nodes that no scene has: MSFT_lod names them. Whether such a node stands in the frame of
-/// the node that names it, or in that of its parent, and whether it replaces the children too, readers see differently;
-/// so the node that names them is one without transform or children, where the two are the same.
-void Exporter::attach_levels(std::size_t node, const ExportedMesh& mesh) {
-  Json& nodes = array_of(document_, "nodes");
-  nodes[node]["mesh"] = mesh.levels.front();
-  if (mesh.levels.size() == 1) return;
-  Json ids = Json::array();
-  for (std::size_t k = 1; k < mesh.levels.size(); ++k) {
-    Json level = {{"mesh", mesh.levels[k]}};
-    const Json name = nodes[node].value("name", Json());
-    if (name.is_string()) level["name"] = level_name(name.get<std::string>(), k);
-    ids.push_back(nodes.size());
-    nodes.push_back(std::move(level));
-  }
-  nodes[node]["extensions"]["MSFT_lod"] = {{"ids", std::move(ids)}};
-  if (!mesh.screen_coverage.empty()) nodes[node]["extras"]["MSFT_screencoverage"] = mesh.screen_coverage;
-  has_lods_ = true;
-}
-
-/// Gives a node that draws a mesh its exported mesh, or none where the cut is empty.
-Status Exporter::attach_mesh(std::size_t i) {
-  Json& nodes = array_of(document_, "nodes");
-  Json& node = nodes[i];
-  node.erase("skin");  // the static triangles were built: skins and morph targets are not in the asset
-  node.erase("weights");
-  if (!node.contains("mesh")) return Ok{};
-  const auto index = node.at("mesh").get<std::size_t>();
-  if (index >= exported_.size()) return malformed("mesh " + std::to_string(index) + " does not exist");
-  const ExportedMesh& mesh = exported_[index];
-  node.erase("mesh");
-  if (mesh.levels.empty()) return Ok{};
-  const bool is_fixed = is_plain_node(node) && !document_.contains("animations");
-  const bool needs_frame = mesh.levels.size() > 1 && !is_fixed;
-  if (!mesh.is_moved() && !needs_frame) {
-    attach_levels(i, mesh);
-    return Ok{};
-  }
-  if (const Status s = check_arrays(node, {"children"}); !s) return s;
-  std::size_t holder = i;
-  const auto add_child = [&](const char* suffix) {
-    Json child = Json::object();
-    if (nodes[i].contains("name")) child["name"] = nodes[i].at("name").get<std::string>() + suffix;
-    array_of(nodes[holder], "children").push_back(nodes.size());
-    holder = nodes.size();
-    nodes.push_back(std::move(child));  // `node` dangles from here on
-  };
-  if (mesh.is_moved()) {
-    add_child(" (origin)");
-    nodes[holder]["translation"] = {mesh.translation.x, mesh.translation.y, mesh.translation.z};
-    if (mesh.step > 0.0) nodes[holder]["scale"] = {mesh.step, mesh.step, mesh.step};
-  }
-  if (mesh.levels.size() > 1) add_child(" (levels)");
-  attach_levels(holder, mesh);
-  return Ok{};
-}
-
-Status Exporter::attach_meshes() {
-  if (!document_.contains("nodes")) {
-    if (const Status s = make_instance_nodes(); !s) return s;
-    if (!document_.contains("nodes")) return Ok{};
-  }
-  Json& nodes = array_of(document_, "nodes");
-  for (const format::InstanceRecord& instance : asset_.instances()) {
-    if (instance.node < nodes.size() && !nodes[instance.node].contains("mesh")) {
-      nodes[instance.node]["mesh"] = origins_[instance.mesh];
-    }
-  }
-  const std::size_t node_count = nodes.size();
-  for (std::size_t i = 0; i < node_count; ++i) {
-    if (const Status s = attach_mesh(i); !s) return s;
-  }
-  return Ok{};
-}
-
-void Exporter::finish_document() {
+void Exporter::finish_document(bool has_lods) {
   document_.erase("meshes");
   document_.erase("skins");
   if (!meshes_.empty()) document_["meshes"] = std::move(meshes_);
@@ -503,9 +228,9 @@ void Exporter::finish_document() {
     else
       document_[key] = std::move(kept);
   }
-  if (has_lods_) use_extension("MSFT_lod", false);
-  if (packing_.quantize && document_.contains("meshes")) use_extension("KHR_mesh_quantization", true);
-  if (is_compressed) use_extension("EXT_meshopt_compression", true);
+  if (has_lods) use_extension(document_, "MSFT_lod", false);
+  if (packing_.quantize && document_.contains("meshes")) use_extension(document_, "KHR_mesh_quantization", true);
+  if (is_compressed) use_extension(document_, "EXT_meshopt_compression", true);
   // glTF wants every top-level list to have an element.
   for (auto it = document_.begin(); it != document_.end();) {
     it = it->is_array() && it->empty() ? document_.erase(it) : std::next(it);
@@ -521,12 +246,9 @@ Result<std::vector<std::uint8_t>> Exporter::run() {
   if (nests_deeper_than(text, kMaxDepth)) return malformed("JSON nests too deep");
   document_ = text.empty() ? Json::object() : Json::parse(text, nullptr, false);
   if (!document_.is_object()) return malformed("not a JSON object");
-  TRY_LET(arrays, check_arrays(document_, {"accessors", "bufferViews", "buffers", "extensionsRequired",
-                                           "extensionsUsed", "images", "nodes", "textures"}));
-  TRY(carry_buffers());
-  TRY(carry_images());
-  move_texture_sources();
-  TRY(complete_materials());
+  TRY(check_arrays(document_, {"accessors", "bufferViews", "buffers", "extensionsRequired", "extensionsUsed", "images",
+                               "nodes", "textures"}));
+  TRY(carry_contents(asset_, document_, binary_));
   exported_.reserve(asset_.meshes().size());
   std::vector<std::vector<MeshId>> members(origins_.size());
   for (std::size_t m = 0; m < origins_.size(); ++m) members[origins_[m]].emplace_back(m);
@@ -536,8 +258,8 @@ Result<std::vector<std::uint8_t>> Exporter::run() {
   for (std::size_t m = 0; m < members.size(); ++m) {
     TRY(add_mesh(m, members[m]));
   }
-  TRY(attach_meshes());
-  finish_document();
+  TRY_LET(has_lods, attach_meshes(asset_, origins_, exported_, document_));
+  finish_document(*has_lods);
   // Names of records need not be UTF-8; what is not is replaced, never refused.
   const std::string json = document_.dump(-1, ' ', false, Json::error_handler_t::replace);
   return assemble_glb(json, binary_.bytes());

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/export/gltf_document.h"
 
+#include <algorithm>
+#include <string_view>
 #include <utility>
 
 namespace meshlode::app {
@@ -14,6 +16,23 @@ GltfJson& array_of(GltfJson& object, const char* key) {
   GltfJson& value = object[key];
   if (value.is_null()) value = GltfJson::array();
   return value;
+}
+
+Status check_arrays(const GltfJson& object, std::initializer_list<const char*> keys) {
+  for (const char* key : keys) {
+    const auto it = object.find(key);
+    if (it != object.end() && !it->is_null() && !it->is_array())
+      return malformed(std::string("/") + key + " is not an array");
+  }
+  return Ok{};
+}
+
+void use_extension(GltfJson& document, const char* name, bool is_required) {
+  for (const char* list : {"extensionsUsed", "extensionsRequired"}) {
+    if (!is_required && list == std::string_view("extensionsRequired")) continue;
+    GltfJson& names = array_of(document, list);
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  }
 }
 
 Error malformed(std::string detail) {

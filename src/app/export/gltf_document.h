@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <initializer_list>
 #include <string>
 
 #include <nlohmann/json.hpp>
@@ -20,6 +21,12 @@ using GltfJson = nlohmann::json;  // keys sorted: deterministic bytes
 
 /// The array under `key`, made empty where it is missing. \pre not another kind of value
 GltfJson& array_of(GltfJson& object, const char* key);
+
+/// Whether each of these members is an array, where it is there. Errors: as malformed().
+[[nodiscard]] Status check_arrays(const GltfJson& object, std::initializer_list<const char*> keys);
+
+/// Names an extension in the document's lists, once.
+void use_extension(GltfJson& document, const char* name, bool is_required);
 
 /// What vertex data and indices are for a view.
 enum class ViewTarget : int { kNone = 0, kVertices = 34962, kIndices = 34963 };

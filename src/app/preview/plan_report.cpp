@@ -13,7 +13,7 @@ namespace meshlode::app {
 
 namespace {
 
-constexpr std::size_t kMaxRows = 40;  ///< of meshes and features: a city has thousands; JSON lists all
+constexpr std::size_t kMaxPlanRows = 40;  ///< of meshes and features: a city has thousands; JSON lists all
 
 std::uint64_t whole(double bytes) {
   return static_cast<std::uint64_t>(std::llround(bytes));
@@ -59,9 +59,9 @@ void add_attribute(std::string& out, const PlannedAttribute& item, const SharedL
                 reason.c_str());
 }
 
-void add_more(std::string& out, std::size_t total, const char* what) {
-  if (total > kMaxRows)
-    append_format(out, "  … and %zu more %s (plan --format json lists all)\n", total - kMaxRows, what);
+void add_more_of_plan(std::string& out, std::size_t total, const char* what) {
+  if (total > kMaxPlanRows)
+    append_format(out, "  … and %zu more %s (plan --format json lists all)\n", total - kMaxPlanRows, what);
 }
 
 std::string gpu_text(const std::optional<std::uint64_t>& bytes) {
@@ -87,7 +87,7 @@ void add_images(std::string& out, const std::vector<PlannedImage>& images) {
                   byte_size_text(stored_gpu).c_str());
   }
   out += "\n";
-  for (std::size_t i = 0; i < images.size() && i < kMaxRows; ++i) {
+  for (std::size_t i = 0; i < images.size() && i < kMaxPlanRows; ++i) {
     const PlannedImage& image = images[i];
     append_format(out, "  %u  %s: %s, %s, %s, %s", image.source_index, printable(image.name, 80).c_str(),
                   printable(image.mime_type, 40).c_str(), size_text(image.size).c_str(),
@@ -98,7 +98,7 @@ void add_images(std::string& out, const std::vector<PlannedImage>& images) {
     }
     out += "\n";
   }
-  add_more(out, images.size(), "images");
+  add_more_of_plan(out, images.size(), "images");
 }
 
 void write_optional(JsonWriter& json, const char* key, const std::optional<std::uint64_t>& number) {
@@ -124,7 +124,7 @@ std::string describe_plan(const ScenePlan& plan) {
   for (std::size_t i = 0; i < plan.meshes.size(); ++i) {
     const PlannedMesh& mesh = plan.meshes[i];
     small += mesh.is_whole ? 1 : 0;
-    if (i >= kMaxRows) continue;
+    if (i >= kMaxPlanRows) continue;
     append_format(out, "  %s: %s triangles, about %s\n", printable(mesh.label, 120).c_str(),
                   grouped_digits(mesh.triangles).c_str(), byte_size_text(whole(mesh.bytes)).c_str());
     for (const PlannedAttribute& item : mesh.attributes) add_attribute(out, item, shared);
@@ -132,17 +132,17 @@ std::string describe_plan(const ScenePlan& plan) {
       append_format(out, "    passed through: one cluster holds all of it, there is nothing to coarsen\n");
     if (mesh.triangles == 0) append_format(out, "    passed through: it has no triangles\n");
   }
-  add_more(out, plan.meshes.size(), "meshes");
+  add_more_of_plan(out, plan.meshes.size(), "meshes");
   for (const auto& [what, loss] : shared) {
     append_format(out, "  left out  %s, %zu of %zu meshes: %s%s\n", what.first.c_str(), loss.meshes, plan.meshes.size(),
                   what.second.c_str(), bytes_text(loss.bytes, false).c_str());
   }
   add_images(out, plan.images);
   append_format(out, "features\n");
-  for (std::size_t i = 0; i < plan.features.size() && i < kMaxRows; ++i) {
+  for (std::size_t i = 0; i < plan.features.size() && i < kMaxPlanRows; ++i) {
     add_line(out, plan.features[i].kept, plan.features[i].what, plan.features[i].reason);
   }
-  add_more(out, plan.features.size(), "features");
+  add_more_of_plan(out, plan.features.size(), "features");
   if (small > 0) {
     add_line(out, true, std::to_string(small) + " of " + std::to_string(plan.meshes.size()) + " meshes",
              "one cluster each: passed through without levels of detail");

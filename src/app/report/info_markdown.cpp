@@ -22,7 +22,7 @@ std::string number(double value) {
   return text;
 }
 
-void add_more(std::string& out, std::size_t total, const char* what) {
+void add_more_paragraph(std::string& out, std::size_t total, const char* what) {
   if (const std::string text = more_text(total, what); !text.empty()) out += "\n" + markdown_text(text) + "\n";
 }
 
@@ -75,7 +75,7 @@ void add_materials(std::string& out, const run::Asset& asset) {
                    (material.source_index == format::kNone ? " (default)" : ""),
                markdown_text(alpha_text(material)), material.double_sided != 0 ? "both" : "front", std::to_string(i)});
   }
-  add_more(out, asset.materials().size(), "materials");
+  add_more_paragraph(out, asset.materials().size(), "materials");
 }
 
 void add_byte_map(std::string& out, const ByteMap& map) {
@@ -102,7 +102,7 @@ std::string info_markdown(const run::Asset& asset, const AssetInfo& info, bool l
   MarkdownTable summary(out, {"", ""}, 2);
   for (const Row& row : summary_rows(asset, info)) summary.row({row.label, markdown_text(row.value)});
   for (std::uint32_t m = 0; m < info.meshes.size() && m < kMaxRows; ++m) add_mesh(out, asset, m, info.meshes[m]);
-  add_more(out, info.meshes.size(), "meshes");
+  add_more_paragraph(out, info.meshes.size(), "meshes");
   if (list_stuck) add_stuck(out, info);
   add_materials(out, asset);
   if (info.byte_map) add_byte_map(out, *info.byte_map);

@@ -86,7 +86,7 @@ void add_byte_map(std::string& out, const ByteMap& map, const AssetInfo& info) {
   append_format(out, "  tables beside the pages: %s bytes\n", grouped_digits(map.table_bytes).c_str());
 }
 
-void add_more(std::string& out, std::size_t total, const char* what) {
+void add_more_line(std::string& out, std::size_t total, const char* what) {
   if (const std::string text = more_text(total, what); !text.empty()) out += "  " + text + "\n";
 }
 
@@ -110,7 +110,7 @@ void add_materials(std::string& out, const run::Asset& asset) {
                   material.source_index == format::kNone ? " (default)" : "", alpha_text(material).c_str(),
                   material.double_sided != 0 ? ", double sided" : "");
   }
-  add_more(out, asset.materials().size(), "materials");
+  add_more_line(out, asset.materials().size(), "materials");
 }
 
 std::string size_text(std::uint32_t width, std::uint32_t height) {
@@ -134,7 +134,7 @@ void add_image_list(std::string& out, const run::Asset& asset, const AssetInfo& 
     }
     out += "\n";
   }
-  add_more(out, info.images.size(), "images");
+  add_more_line(out, info.images.size(), "images");
 }
 
 void append_sections(std::string& out, const run::Asset& asset) {
@@ -157,7 +157,7 @@ std::string info_text(const run::Asset& asset, const AssetInfo& info, bool list_
   for (std::uint32_t m = 0; m < info.meshes.size() && m < kMaxRows; ++m) {
     has_bars = add_mesh(out, asset, m, info.meshes[m], style) || has_bars;
   }
-  add_more(out, info.meshes.size(), "meshes");
+  add_more_line(out, info.meshes.size(), "meshes");
   if (has_bars) out += "  (the bar of an error is half as long for a quarter of it)\n";
   if (list_stuck) add_stuck(out, info);
   add_materials(out, asset);

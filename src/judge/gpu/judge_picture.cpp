@@ -15,6 +15,7 @@
 #include "draw/raster/legend.h"
 #include "draw/raster/projection.h"
 #include "judge/metrics/shaded_surface.h"
+#include "judge/pictures/cameras.h"
 #include "run/decode/decode.h"
 
 namespace meshlode::judge {
@@ -127,12 +128,8 @@ std::vector<PixelPoint> unproject_source(const run::Asset& asset, std::span<cons
 /// Pixels that a length in mesh units covers at a point of an instance: k · σ / max(distance, near).
 double pixels_per_unit_at(const draw::Projection& projection, const format::InstanceRecord& instance, const Vec3d& p) {
   if (projection.is_orthographic) return projection.pixels_per_unit * instance.scale;
-  Vec3d world(0.0);
-  for (int row = 0; row < 3; ++row) {
-    const double* m = instance.transform + 4 * row;
-    world[row] = m[0] * p.x + m[1] * p.y + m[2] * p.z + m[3] - projection.eye[row];
-  }
-  return projection.pixels_per_unit * instance.scale / std::max(glm::length(world), projection.near_distance);
+  const Vec3d from_eye = transform_point(instance, p) - projection.eye;
+  return projection.pixels_per_unit * instance.scale / std::max(glm::length(from_eye), projection.near_distance);
 }
 
 double degrees_between(const Vec3d& a, const Vec3d& b) {

@@ -16,7 +16,7 @@
 namespace meshlode::judge {
 namespace {
 
-constexpr std::size_t kChunk = 1024;
+constexpr std::size_t kSamplesAtOnce = 1024;
 
 using Values = std::array<Vec3d, kFields>;
 
@@ -35,7 +35,7 @@ struct Candidate {
 };
 
 /// Scratch of one thread's chunk.
-struct Search {
+struct DriftSearch {
   std::vector<NearestPoint> found;
   std::vector<Candidate> sides;
   Layers::Scratch layers;
@@ -57,7 +57,7 @@ class Pairing {
   [[nodiscard]] const std::vector<std::size_t>& compared() const { return compared_; }
 
   /// The differences of a point's values from those of its counterpart; below 0 where one of the two is unknown.
-  std::array<double, kFields> differences(const Probe& probe, const NearestPoint& nearest, Search& search) const {
+  std::array<double, kFields> differences(const Probe& probe, const NearestPoint& nearest, DriftSearch& search) const {
     collect(probe.position, nearest, search);
     std::array<double, kFields> explained{}, best{};
     for (const std::size_t f : compared_) explained[f] = explained_at(probe, f);
@@ -110,7 +110,7 @@ class Pairing {
     return cost;
   }
 
-  void collect(const Vec3d& p, const NearestPoint& nearest, Search& search) const {
+  void collect(const Vec3d& p, const NearestPoint& nearest, DriftSearch& search) const {
     const double distance = std::sqrt(nearest.distance2);
     search.sides.clear();
     search.sides.push_back(candidate(nearest.triangle, closest_on_triangle(p, surface_, nearest.triangle)));
@@ -130,7 +130,7 @@ class Pairing {
     for (const std::size_t f : compared_) collect_beyond_seams(p, distance, f, search);
   }
 
-  void collect_beyond_seams(const Vec3d& p, double distance, std::size_t field, Search& search) const {
+  void collect_beyond_seams(const Vec3d& p, double distance, std::size_t field, DriftSearch& search) const {
     const Field& to = *to_[field];
     if (!to.seam_tree) return;
     find_ordered(*to.seam_tree, p, distance + options_.seam_reach, search);
@@ -144,7 +144,7 @@ class Pairing {
   }
 
   /// By distance, so that what is kept does not depend on the tree.
-  static void find_ordered(const TriangleTree& tree, const Vec3d& p, double reach, Search& search) {
+  static void find_ordered(const TriangleTree& tree, const Vec3d& p, double reach, DriftSearch& search) {
     search.found.clear();
     tree.find_within(p, reach * reach, search.found);
     std::sort(search.found.begin(), search.found.end(), [](const NearestPoint& x, const NearestPoint& y) {
@@ -159,7 +159,7 @@ class Pairing {
   }
 
   /// Whether the surface leads from a candidate before to this one, by what it has there of a field.
-  [[nodiscard]] bool is_slide(const Candidate& other, std::size_t field, const Search& search) const {
+  [[nodiscard]] bool is_slide(const Candidate& other, std::size_t field, const DriftSearch& search) const {
     return std::any_of(search.sides.begin(), search.sides.end(), [&](const Candidate& side) {
       const double slide = glm::length(side.point - other.point);
       const double jump = glm::length(side.values[field] - other.values[field]);
@@ -227,10 +227,10 @@ BothDrifts measure_one_way(const DriftSurface::Parts& from, const DriftSurface::
   const std::size_t count = sample_count + vertices.size();
   std::vector<double> normal(count, -1.0), uv(count, -1.0);  // below 0: unknown
   const Pairing pairing(from.fields, to.shaded.surface, to.tree, to.layers, to.fields, options);
-  parallel_for_each_index((count + kChunk - 1) / kChunk, 1, [&](std::size_t chunk) {
-    Search search;
+  parallel_for_each_index((count + kSamplesAtOnce - 1) / kSamplesAtOnce, 1, [&](std::size_t chunk) {
+    DriftSearch search;
     std::uint32_t hint = 0xFFFFFFFFu;
-    for (std::size_t i = chunk * kChunk; i < std::min(count, (chunk + 1) * kChunk); ++i) {
+    for (std::size_t i = chunk * kSamplesAtOnce; i < std::min(count, (chunk + 1) * kSamplesAtOnce); ++i) {
       const bool is_sample = i < sample_count;
       const SurfacePoint at = is_sample ? samples.sample(i) : SurfacePoint{};
       const std::uint32_t vertex = is_sample ? 0 : vertices[i - sample_count];

@@ -117,7 +117,7 @@ Farthest find_farthest(const Measured<N>& from, const ProductTree<N>& to, double
       });
   std::vector<Farthest> partials(chunk_count(from.points.size(), kChunk));
   parallel_for_each_chunk(from.points.size(), kChunk, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
-    std::uint32_t hint = ProductTree<N>::kNone;
+    std::uint32_t hint = kNoId;
     double reach = std::numeric_limits<double>::infinity();  // the surface is no farther from the point before
     for (std::size_t i = begin; i < end; ++i) {
       // What is known so far decides how long the search takes, not what comes of it: the farthest point is never
@@ -131,7 +131,7 @@ Farthest find_farthest(const Measured<N>& from, const ProductTree<N>& to, double
                   : std::numeric_limits<double>::infinity();
       if (reach * (1.0 + kSearchRounding) < near) continue;
       const auto within = to.any_within(near * near, point, hint);
-      if (within.triangle != ProductTree<N>::kNone) {
+      if (within.triangle != kNoId) {
         hint = within.triangle;
         reach = std::sqrt(within.distance2);
         continue;

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/ids.h"
 #include "base/vec.h"
 
 namespace meshlode::judge {
@@ -179,10 +180,9 @@ class ProductTree {
  public:
   using Row = product::Row<N>;
   using Corners = product::Corners<N>;
-  static constexpr std::uint32_t kNone = 0xFFFFFFFFu;
   struct Nearest {
     double distance2 = std::numeric_limits<double>::infinity();
-    std::uint32_t triangle = kNone;
+    std::uint32_t triangle = kNoId;
   };
 
   /// Of more triangles frames are made whenever they are looked at: the same distances. They take 160 bytes each and
@@ -228,10 +228,10 @@ class ProductTree {
 
   /// The nearest triangle. Safe from several threads, as is what follows.
   [[nodiscard]] Nearest nearest(const ProductPoint<N>& point) const { return search(point, Nearest()); }
-  /// Some triangle that is nearer than a squared distance, or kNone and that distance. `hint` names one that probably
-  /// is; it may be kNone.
+  /// Some triangle that is nearer than a squared distance, or kNoId and that distance. `hint` names one that probably
+  /// is; it may be kNoId.
   [[nodiscard]] Nearest any_within(double distance2, const ProductPoint<N>& point, std::uint32_t hint) const {
-    return search(point, {distance2, kNone}, true, hint);
+    return search(point, {distance2, kNoId}, true, hint);
   }
 
   [[nodiscard]] bool empty() const { return nodes_.empty(); }
@@ -249,7 +249,7 @@ class ProductTree {
 
   /// The nearest triangle that is nearer than `best`, or any.
   [[nodiscard]] Nearest search(const ProductPoint<N>& point, Nearest best, bool is_any_enough = false,
-                               std::uint32_t hint = kNone) const {
+                               std::uint32_t hint = kNoId) const {
     if (nodes_.empty()) return best;
     const bool knows_all = point.known == layout_.all_known();
     const auto try_triangle = [&](std::uint32_t i) {
@@ -280,7 +280,7 @@ class ProductTree {
     };
     stack[size++] = {0, distance2_of(0)};
     while (size > 0) {
-      if (is_any_enough && best.triangle != kNone) return best;
+      if (is_any_enough && best.triangle != kNoId) return best;
       const Entry entry = stack[--size];
       if (entry.distance2 >= best.distance2) continue;
       const Node& node = nodes_[entry.node];

@@ -13,9 +13,8 @@
 namespace meshlode::judge {
 namespace {
 
-constexpr std::uint32_t kNone = NearestPoint::kNone;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr std::size_t kChunk = 256;
+constexpr std::size_t kTrianglesAtOnce = 256;
 constexpr std::size_t kPiecesAtOnce = 1024;  // of those that are open the farthest, or a quarter
 
 // Of regula falsi. Most places are found in two; where a surface is flat to the last digits it is all the way to them.
@@ -64,9 +63,9 @@ double square_of(double distance) {
 }
 
 /// Looks at pieces of one surface, to find whether another is nearer than `known` everywhere.
-class Search {
+class BracketSearch {
  public:
-  Search(const BracketTarget& b, double known)
+  BracketSearch(const BracketTarget& b, double known)
       : b_(b.surface), tree_(b.tree), parts_(b.parts), known_(known), known2_(square_of(known)) {}
 
   /// A triangle with the nearest triangles of its corners.
@@ -179,7 +178,7 @@ class Search {
   /// A triangle that is near enough to a point becomes a candidate, or where there is none the nearest.
   std::uint8_t ask(Piece& piece, const Vec3d& p, std::uint32_t hint, Found& found) const {
     NearestPoint nearest = tree_.any_within(known2_, p, hint);
-    if (nearest.triangle == kNone) {
+    if (nearest.triangle == kNoId) {
       nearest = tree_.nearest(p, hint);
       found.meet(std::sqrt(nearest.distance2), p);
     }
@@ -280,17 +279,17 @@ class Search {
 std::vector<std::uint32_t> find_nearest(const Surface& a, std::span<const std::uint32_t> triangles,
                                         const TriangleTree& tree, Found& found) {
   std::vector<std::uint32_t> order;
-  std::vector<std::uint32_t> near(a.positions.size(), kNone);
+  std::vector<std::uint32_t> near(a.positions.size(), kNoId);
   for (const std::uint32_t t : triangles) {
     for (const std::uint32_t v : a.triangles[t]) {
-      if (near[v] != kNone) continue;
+      if (near[v] != kNoId) continue;
       near[v] = 0;
       order.push_back(v);
     }
   }
-  std::vector<Found> parts(chunk_count(order.size(), kChunk));
-  parallel_for_each_chunk(order.size(), kChunk, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
-    std::uint32_t hint = kNone;
+  std::vector<Found> parts(chunk_count(order.size(), kTrianglesAtOnce));
+  parallel_for_each_chunk(order.size(), kTrianglesAtOnce, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+    std::uint32_t hint = kNoId;
     for (std::size_t i = begin; i < end; ++i) {
       const Vec3d& p = a.positions[order[i]];
       const NearestPoint nearest = tree.nearest(p, hint);
@@ -307,10 +306,10 @@ template <class PieceAt>
 std::vector<NearParts> look_at_all(std::size_t count, const PieceAt& piece_at, const BracketTarget& b, double enough,
                                    std::uint64_t budget, Found& found) {
   const std::uint64_t most = budget > found.splits ? 1 + (budget - found.splits) / count : 0;
-  std::vector<Found> parts(chunk_count(count, kChunk));
+  std::vector<Found> parts(chunk_count(count, kTrianglesAtOnce));
   std::vector<NearParts> near(count);
-  parallel_for_each_chunk(count, kChunk, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
-    Search search(b, enough);
+  parallel_for_each_chunk(count, kTrianglesAtOnce, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+    BracketSearch search(b, enough);
     for (std::size_t i = begin; i < end; ++i) near[i] = search.look_at(piece_at(i, search), most, parts[chunk]);
   });
   for (const Found& part : parts) found.add(part);
@@ -346,7 +345,7 @@ Bracket bracket_one_way(const Surface& a, std::span<const std::uint32_t> triangl
     out.upper = options.enough;
     return out;
   }
-  const auto triangle_at = [&](std::size_t i, const Search& search) {
+  const auto triangle_at = [&](std::size_t i, const BracketSearch& search) {
     const auto& [p, q, r] = a.triangles[triangles[i]];
     return search.piece_of({a.positions[p], a.positions[q], a.positions[r]}, {nearest[p], nearest[q], nearest[r]});
   };
@@ -357,7 +356,7 @@ Bracket bracket_one_way(const Surface& a, std::span<const std::uint32_t> triangl
     std::erase_if(found.open, [&](const Piece& p) { return p.upper <= enough; });
     if (found.open.empty() || found.splits >= options.budget) break;
     std::vector<Piece> taken = take_farthest(found.open);
-    const auto taken_at = [&](std::size_t i, const Search& search) {
+    const auto taken_at = [&](std::size_t i, const BracketSearch& search) {
       search.renew(taken[i]);
       return taken[i];
     };

@@ -378,7 +378,7 @@ NearestPoint TriangleTree::search(const Vec3d& point, std::uint32_t hint, Neares
   std::size_t size = 0;
   stack[size++] = {0, distance2_to_box(nodes_[0].box, at)};
   while (size > 0) {
-    if (is_any_enough && best.triangle != NearestPoint::kNone) return best;
+    if (is_any_enough && best.triangle != kNoId) return best;
     const Entry entry = stack[--size];
     if (entry.distance2 >= limit) continue;
     const Node& node = nodes_[entry.node];

@@ -8,14 +8,14 @@
 #include <span>
 #include <vector>
 
+#include "base/ids.h"
 #include "judge/metrics/metrics.h"
 
 namespace meshlode::judge {
 
 struct NearestPoint {
-  static constexpr std::uint32_t kNone = 0xFFFFFFFFu;
   double distance2 = std::numeric_limits<double>::infinity();
-  std::uint32_t triangle = kNone;  ///< of the surface; ties go to any
+  std::uint32_t triangle = kNoId;  ///< of the surface; ties go to any
 };
 
 /// Squared distance from a point to a triangle, which may be a needle, a segment or a point.
@@ -38,14 +38,14 @@ class TriangleTree {
   TriangleTree(TriangleTree&&) = default;
 
   /// The nearest triangle. `hint` names a triangle that is probably near, and changes the time taken alone; it may be
-  /// kNone. Infinite for an empty tree. Safe from several threads.
-  [[nodiscard]] NearestPoint nearest(const Vec3d& point, std::uint32_t hint = NearestPoint::kNone) const {
+  /// kNoId. Infinite for an empty tree. Safe from several threads.
+  [[nodiscard]] NearestPoint nearest(const Vec3d& point, std::uint32_t hint = kNoId) const {
     return search(point, hint, NearestPoint(), false);
   }
-  /// Some triangle that is nearer than a squared distance, or kNone and that distance where there is none, but for the
+  /// Some triangle that is nearer than a squared distance, or kNoId and that distance where there is none, but for the
   /// rounding of boxes.
   [[nodiscard]] NearestPoint any_within(double distance2, const Vec3d& point, std::uint32_t hint) const {
-    return search(point, hint, {distance2, NearestPoint::kNone}, true);
+    return search(point, hint, {distance2, kNoId}, true);
   }
   /// Triangles of the surface, those that are near each other one after another; one in several leaves several times.
   [[nodiscard]] std::span<const std::uint32_t> triangles_in_order() const { return triangle_; }

@@ -7,6 +7,15 @@
 
 namespace meshlode::judge {
 
+Vec3d transform_point(const format::InstanceRecord& instance, const Vec3d& p) {
+  Vec3d out(0.0);
+  for (int row = 0; row < 3; ++row) {
+    const double* m = instance.transform + 4 * row;
+    out[row] = m[0] * p.x + m[1] * p.y + m[2] * p.z + m[3];
+  }
+  return out;
+}
+
 WorldBox world_box(const run::Asset& asset) {
   WorldBox box;
   bool is_first = true;
@@ -15,15 +24,12 @@ WorldBox world_box(const run::Asset& asset) {
     if ((instance.flags & format::kInstanceSingular) != 0 || mesh.cluster_count == 0) continue;
     const double step = std::ldexp(static_cast<double>(mesh.grid.mantissa), mesh.grid.log2);
     for (int corner = 0; corner < 8; ++corner) {
-      Vec3d p{0.0}, world{0.0};
+      Vec3d p{0.0};
       for (int axis = 0; axis < 3; ++axis) {
         p[axis] =
             mesh.origin[axis] + step * ((corner >> axis & 1) != 0 ? mesh.bounds_max[axis] : mesh.bounds_min[axis]);
       }
-      for (int row = 0; row < 3; ++row) {
-        const double* m = instance.transform + 4 * row;
-        world[row] = m[0] * p.x + m[1] * p.y + m[2] * p.z + m[3];
-      }
+      const Vec3d world = transform_point(instance, p);
       for (int axis = 0; axis < 3; ++axis) {
         box.low[axis] = is_first ? world[axis] : std::min(box.low[axis], world[axis]);
         box.high[axis] = is_first ? world[axis] : std::max(box.high[axis], world[axis]);

@@ -21,6 +21,9 @@ struct WorldBox {
 };
 [[nodiscard]] WorldBox world_box(const run::Asset& asset);
 
+/// A point of an instance's mesh, world units.
+[[nodiscard]] Vec3d transform_point(const format::InstanceRecord& instance, const Vec3d& p);
+
 struct NamedCamera {
   std::string name;
   run::Camera camera;

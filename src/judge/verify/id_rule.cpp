@@ -19,15 +19,6 @@ constexpr std::array<double, 3> kPixelErrors = {2.0, 4.0, 8.0};
 /// Of the whole scene, what a close view sees.
 constexpr double kCloseView = 0.2;
 
-Vec3d transform_point(const format::InstanceRecord& instance, const Vec3d& p) {
-  Vec3d out(0.0);
-  for (int row = 0; row < 3; ++row) {
-    const double* m = instance.transform + 4 * row;
-    out[row] = m[0] * p.x + m[1] * p.y + m[2] * p.z + m[3];
-  }
-  return out;
-}
-
 /// Middles of clusters at random: there are more where there is more to see.
 class Targets {
  public:

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "judge/pictures/cameras.h"
+
 namespace meshlode::judge {
 
 namespace {
@@ -16,10 +18,6 @@ Vec3d turn(const format::InstanceRecord& instance, const Vec3d& p) {
 
 Vec3d translation_of(const format::InstanceRecord& instance) {
   return {instance.transform[3], instance.transform[7], instance.transform[11]};
-}
-
-Vec3d transform_point(const format::InstanceRecord& instance, const Vec3d& p) {
-  return turn(instance, p) + translation_of(instance);
 }
 
 /// Of the products that make turn(): their magnitudes, all rows together.

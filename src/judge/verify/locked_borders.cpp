@@ -26,10 +26,10 @@ bool precedes(const Vec3d& p, const Vec3d& q) {
   return std::tuple(p.x, p.y, p.z) < std::tuple(q.x, q.y, q.z);
 }
 
-using Edge = std::pair<std::uint32_t, std::uint32_t>;
+using PointPair = std::pair<std::uint32_t, std::uint32_t>;
 
 /// The ends of edges that are there once. `edges` are sorted.
-std::vector<std::uint32_t> ends_of_single(const std::vector<Edge>& edges) {
+std::vector<std::uint32_t> ends_of_single(const std::vector<PointPair>& edges) {
   std::vector<std::uint32_t> ends;
   for (std::size_t i = 0; i < edges.size(); ++i) {
     const bool is_single = (i == 0 || edges[i] != edges[i - 1]) && (i + 1 == edges.size() || edges[i] != edges[i + 1]);
@@ -179,9 +179,10 @@ std::vector<Vec3d> find_open_border(const TriangleCorners& drawn) {
   }
   std::sort(triangles.begin(), triangles.end());
   triangles.erase(std::unique(triangles.begin(), triangles.end()), triangles.end());
-  std::vector<Edge> edges;
+  std::vector<PointPair> edges;
   for (const auto& [a, b, c] : triangles) {
-    for (const auto& [from, to] : {Edge(a, b), Edge(b, c), Edge(c, a)}) edges.emplace_back(std::minmax(from, to));
+    for (const auto& [from, to] : {PointPair(a, b), PointPair(b, c), PointPair(c, a)})
+      edges.emplace_back(std::minmax(from, to));
   }
   std::sort(edges.begin(), edges.end());
   std::vector<Vec3d> border;

@@ -41,7 +41,7 @@ std::array<double, scene::kMaxUvSets> most_texels(std::span<const std::array<dou
 
 std::array<bool, scene::kMaxUvSets> has_finest_step(const run::Asset& asset, MeshId mesh,
                                                     std::span<const run::DecodedCluster> clusters) {
-  constexpr std::int64_t kLargest = (std::int64_t{1} << 24U) - 1;
+  constexpr std::int64_t kLargestInteger = (std::int64_t{1} << 24U) - 1;
   const format::MeshRecord& record = asset.meshes()[mesh.value];
   const std::size_t first_uv = record.normal_mode == format::NormalMode::kStored ? 6 : 3;
   std::array<bool, scene::kMaxUvSets> is_finest{};
@@ -50,7 +50,7 @@ std::array<bool, scene::kMaxUvSets> has_finest_step(const run::Asset& asset, Mes
     for (std::uint32_t v = 0; v < cluster.vertex_count; ++v) {
       const std::int32_t* uv = &cluster.channels[std::size_t{v} * cluster.channel_count + first_uv];
       for (std::uint32_t k = 0; k < 2 * record.uv_set_count; ++k) {
-        is_finest[k / 2] = is_finest[k / 2] || 2 * std::abs(std::int64_t{uv[k]}) > kLargest;
+        is_finest[k / 2] = is_finest[k / 2] || 2 * std::abs(std::int64_t{uv[k]}) > kLargestInteger;
       }
     }
   }

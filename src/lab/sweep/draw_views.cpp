@@ -50,10 +50,6 @@ struct Drawable {
 /// A pixel error of 0 lets only errors of 0 pass: the finest cut.
 constexpr double kFullResolution = 0.0;
 
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
 void raise(std::map<std::string, double>& figures, const char* key, double value) {
   const auto [at, is_new] = figures.try_emplace(key, value);
   if (!is_new) at->second = std::max(at->second, value);
@@ -131,7 +127,7 @@ Status time_frames(const run::Asset& asset, const ViewSet& set, double pixel_err
   const auto start = std::chrono::steady_clock::now();
   TRY_LET(cut, select_cut(asset, camera, pixel_error));
   TRY_LET(visibility, draw::draw_cut(asset, *cut, camera, drawable.masks));
-  out.figures["frame_cpu_seconds"] = seconds_since(start);
+  out.figures["frame_cpu_seconds"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (!has_device) return Ok{};
   draw::GpuRenderOptions options;
   options.pixel_error = pixel_error;

@@ -106,10 +106,10 @@ TEST(Metrics, NearestPointsAgreeWithCgalAtAnySizeAndOffset) {
         const Vec3d p = s.positions[random.below(6000)] + random.in_cube(size * random.log_between(1e-6, 10.0));
         const NearestPoint nearest = tree.nearest(p, hint);
         EXPECT_EQ(nearest.distance2, tree.nearest(p).distance2) << "a hint changes no result";
-        EXPECT_EQ(tree.any_within(nearest.distance2, p, hint).triangle, NearestPoint::kNone) << "nothing is nearer";
+        EXPECT_EQ(tree.any_within(nearest.distance2, p, hint).triangle, kNoId) << "nothing is nearer";
         const double more = 1.1 * nearest.distance2 + 1e-18 * size * size * (1.0 + offset * offset);
         const NearestPoint within = tree.any_within(more, p, hint);
-        ASSERT_NE(within.triangle, NearestPoint::kNone);
+        ASSERT_NE(within.triangle, kNoId);
         EXPECT_LT(within.distance2, more);
         hint = nearest.triangle;
         const double expected = std::sqrt(oracle.distance2(p));

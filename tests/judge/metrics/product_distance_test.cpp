@@ -155,10 +155,10 @@ TEST(ProductDistance, NearestPointsAreThoseThatLookingFinds) {
       }
       const double found = std::sqrt(tree.nearest(point).distance2);
       EXPECT_NEAR(found, std::sqrt(looked), 1e-6 * found) << "turn " << turn;
-      for (const std::uint32_t hint : {ProductTree<8>::kNone, 7U}) {
-        EXPECT_EQ(tree.any_within(0.998 * found * found, point, hint).triangle, ProductTree<8>::kNone);
+      for (const std::uint32_t hint : {kNoId, 7U}) {
+        EXPECT_EQ(tree.any_within(0.998 * found * found, point, hint).triangle, kNoId);
         const auto within = tree.any_within(1.5 * found * found + 1e-12, point, hint);
-        EXPECT_NE(within.triangle, ProductTree<8>::kNone);
+        EXPECT_NE(within.triangle, kNoId);
         EXPECT_LT(within.distance2, 1.5 * found * found + 1e-12);
       }
     }

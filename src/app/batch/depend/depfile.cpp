@@ -11,7 +11,7 @@ namespace meshlode::app {
 namespace {
 
 /// What both Make and Ninja take for the file: backslashes mean themselves but before a blank or a #.
-std::string escaped(const std::filesystem::path& path) {
+std::string escaped_for_make(const std::filesystem::path& path) {
   std::string out;
   std::size_t backslashes = 0;
   for (const char c : path.native()) {
@@ -41,10 +41,10 @@ Result<std::string> depfile_text(const std::vector<DepfileRule>& rules) {
   std::string text;
   std::set<std::string> alone;
   for (const DepfileRule& rule : rules) {
-    text += escaped(rule.output) + ":";
+    text += escaped_for_make(rule.output) + ":";
     for (std::size_t i = 0; i < rule.inputs.size(); ++i) {
-      text += (i == 0 ? " " : " \\\n  ") + escaped(rule.inputs[i]);
-      if (i > 0) alone.insert(escaped(rule.inputs[i]));
+      text += (i == 0 ? " " : " \\\n  ") + escaped_for_make(rule.inputs[i]);
+      if (i > 0) alone.insert(escaped_for_make(rule.inputs[i]));
     }
     text += "\n";
   }

@@ -18,7 +18,7 @@ namespace meshlode::app {
 
 namespace {
 
-std::optional<std::uint32_t> parse_number(std::string_view text) {
+std::optional<std::uint32_t> parse_count(std::string_view text) {
   std::uint32_t number = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
@@ -46,8 +46,8 @@ Hash128 hash_jobs(const std::vector<Job>& jobs) {
 
 Result<Shard> parse_shard(std::string_view text) {
   const std::size_t slash = text.find('/');
-  const auto index = parse_number(text.substr(0, slash));
-  const auto count = parse_number(slash == std::string_view::npos ? std::string_view() : text.substr(slash + 1));
+  const auto index = parse_count(text.substr(0, slash));
+  const auto count = parse_count(slash == std::string_view::npos ? std::string_view() : text.substr(slash + 1));
   if (!index || !count || *index < 1 || *index > *count || *count > kMaxShards) {
     return Error{
         ErrorCode::kUsage, "--shard",

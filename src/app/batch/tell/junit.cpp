@@ -30,7 +30,7 @@ std::size_t character_length(std::string_view text) {
 }
 
 /// Text of an attribute: what XML cannot hold becomes U+FFFD.
-std::string escaped(std::string_view text) {
+std::string escaped_for_xml(std::string_view text) {
   std::string out;
   while (!text.empty()) {
     const std::size_t length = character_length(text);
@@ -79,14 +79,15 @@ TestCase case_of(const JobResult& r) {
 }
 
 std::string case_xml(const std::string& verb, const TestCase& test) {
-  std::string text = "    <testcase classname=\"meshlode." + verb + "\" name=\"" + escaped(test.name) + "\"";
+  std::string text = "    <testcase classname=\"meshlode." + verb + "\" name=\"" + escaped_for_xml(test.name) + "\"";
   append_format(text, " time=\"%.3f\"", test.seconds);
-  if (test.is_skipped) return text + ">\n      <skipped message=\"" + escaped(test.text) + "\"/>\n    </testcase>\n";
+  if (test.is_skipped)
+    return text + ">\n      <skipped message=\"" + escaped_for_xml(test.text) + "\"/>\n    </testcase>\n";
   if (test.exit_code != 0) {
-    return text + ">\n      <failure type=\"" + kind_of(test.exit_code) + "\" message=\"" + escaped(test.text) +
+    return text + ">\n      <failure type=\"" + kind_of(test.exit_code) + "\" message=\"" + escaped_for_xml(test.text) +
            "\"/>\n    </testcase>\n";
   }
-  return text + ">\n      <system-out>" + escaped(test.text) + "</system-out>\n    </testcase>\n";
+  return text + ">\n      <system-out>" + escaped_for_xml(test.text) + "</system-out>\n    </testcase>\n";
 }
 
 }  // namespace

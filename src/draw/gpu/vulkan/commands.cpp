@@ -34,8 +34,8 @@ Result<Commands> Commands::begin(const Device& device) {
 
 namespace {
 
-void bind(CommandsImpl& c, const PipelineImpl& pipeline, VkPipelineBindPoint point,
-          std::span<const std::uint8_t> push) {
+void bind_pipeline(CommandsImpl& c, const PipelineImpl& pipeline, VkPipelineBindPoint point,
+                   std::span<const std::uint8_t> push) {
   const Functions& f = c.device->f;
   f.vkCmdBindPipeline(c.buffer, point, pipeline.pipeline);
   f.vkCmdPushConstants(c.buffer, c.device->layout, c.device->push_stages, 0, static_cast<std::uint32_t>(push.size()),
@@ -47,7 +47,7 @@ void bind(CommandsImpl& c, const PipelineImpl& pipeline, VkPipelineBindPoint poi
 void Commands::dispatch(const Pipeline& pipeline, std::span<const std::uint8_t> push, std::uint32_t groups) {
   CommandsImpl& c = *impl_;
   c.keep.push_back(pipeline.impl_);
-  bind(c, *pipeline.impl_, VK_PIPELINE_BIND_POINT_COMPUTE, push);
+  bind_pipeline(c, *pipeline.impl_, VK_PIPELINE_BIND_POINT_COMPUTE, push);
   // One dimension holds 65535 groups at least; shaders read gl_WorkGroupID.y as the high part.
   constexpr std::uint32_t kRow = 32768;
   c.device->f.vkCmdDispatch(c.buffer, std::min(groups, kRow), (groups + kRow - 1) / kRow, 1);
@@ -58,7 +58,7 @@ void Commands::dispatch_indirect(const Pipeline& pipeline, std::span<const std::
   CommandsImpl& c = *impl_;
   c.keep.push_back(pipeline.impl_);
   c.keep.push_back(arguments.impl_);
-  bind(c, *pipeline.impl_, VK_PIPELINE_BIND_POINT_COMPUTE, push);
+  bind_pipeline(c, *pipeline.impl_, VK_PIPELINE_BIND_POINT_COMPUTE, push);
   c.device->f.vkCmdDispatchIndirect(c.buffer, arguments.impl_->buffer, offset);
 }
 
@@ -72,7 +72,7 @@ void Commands::draw_indirect(const Pipeline& pipeline, std::span<const std::uint
   rendering.renderArea.extent = {width, height};
   rendering.layerCount = 1;
   f.vkCmdBeginRendering(c.buffer, &rendering);
-  bind(c, *pipeline.impl_, VK_PIPELINE_BIND_POINT_GRAPHICS, push);
+  bind_pipeline(c, *pipeline.impl_, VK_PIPELINE_BIND_POINT_GRAPHICS, push);
   const VkViewport viewport{0.0F, 0.0F, static_cast<float>(width), static_cast<float>(height), 0.0F, 1.0F};
   f.vkCmdSetViewport(c.buffer, 0, 1, &viewport);
   f.vkCmdSetScissor(c.buffer, 0, 1, &rendering.renderArea);

@@ -81,12 +81,12 @@ class NodeChecker : public JsonChecker {
 
   bool check_trees() {
     const auto& nodes = root_.items("nodes");
-    parent_.assign(nodes.size(), kNoIndex);
+    parent_.assign(nodes.size(), kNoId);
     for (std::size_t i = 0; i < nodes.size(); ++i) {
       const auto& children = nodes[i].items("children");
       for (std::size_t c = 0; c < children.size(); ++c) {
         const std::uint64_t child = children[c].index().value_or(0);
-        if (parent_[child] != kNoIndex) {
+        if (parent_[child] != kNoId) {
           return fail(
               "/nodes/" + std::to_string(i) + "/children/" + std::to_string(c),
               "node " + std::to_string(child) + " already has a parent, node " + std::to_string(parent_[child]));
@@ -95,11 +95,11 @@ class NodeChecker : public JsonChecker {
       }
     }
     // Each node has at most one parent: walking upward, each node once in all, finds every cycle.
-    std::vector<std::uint32_t> mark(nodes.size(), kNoIndex);
+    std::vector<std::uint32_t> mark(nodes.size(), kNoId);
     for (std::uint32_t i = 0; i < nodes.size(); ++i) {
       std::uint32_t n = i;
-      for (; n != kNoIndex && mark[n] == kNoIndex; n = parent_[n]) mark[n] = i;
-      if (n != kNoIndex && mark[n] == i) return fail("/nodes/" + std::to_string(n), "the node is its own ancestor");
+      for (; n != kNoId && mark[n] == kNoId; n = parent_[n]) mark[n] = i;
+      if (n != kNoId && mark[n] == i) return fail("/nodes/" + std::to_string(n), "the node is its own ancestor");
     }
     return true;
   }
@@ -117,7 +117,7 @@ class NodeChecker : public JsonChecker {
       for (std::size_t i = 0; i < roots.size(); ++i) {
         const std::uint64_t node = roots[i].index().value_or(0);
         const std::string here = path + "/nodes/" + std::to_string(i);
-        if (parent_[node] != kNoIndex) return fail(here, "node " + std::to_string(node) + " is not a root");
+        if (parent_[node] != kNoId) return fail(here, "node " + std::to_string(node) + " is not a root");
         if (seen_in[node] == s) return fail(here, "node " + std::to_string(node) + " is named twice");
         seen_in[node] = s;
       }

@@ -30,7 +30,7 @@ namespace meshlode::scene {
 
 namespace {
 
-Error invalid(std::string detail) {
+Error invalid_draco(std::string detail) {
   return {ErrorCode::kInvalid, "", "Draco: " + std::move(detail)};
 }
 
@@ -96,19 +96,20 @@ enum class Method { kSequential, kEdgebreaker };
 Result<Method> check_head(std::span<const std::uint8_t> bytes, const DracoExpectation& expected) {
   HeadReader head(bytes);
   for (const char c : {'D', 'R', 'A', 'C', 'O'}) {
-    if (head.byte() != static_cast<std::uint8_t>(c)) return invalid("the bytes do not begin with DRACO");
+    if (head.byte() != static_cast<std::uint8_t>(c)) return invalid_draco("the bytes do not begin with DRACO");
   }
   const std::uint8_t major = head.byte();
   const std::uint8_t minor = head.byte();
   const std::uint8_t type = head.byte();
   const std::uint8_t method = head.byte();
   const unsigned flags = head.byte() | static_cast<unsigned>(head.byte()) << 8U;
-  if (!head.ok()) return invalid("the header is cut short");
+  if (!head.ok()) return invalid_draco("the header is cut short");
   if (major != 2 || minor != 2) {
-    return invalid("bitstream version " + std::to_string(major) + "." + std::to_string(minor) + ", glTF asks for 2.2");
+    return invalid_draco("bitstream version " + std::to_string(major) + "." + std::to_string(minor) +
+                         ", glTF asks for 2.2");
   }
-  if (type != 1) return invalid("not a triangular mesh");
-  if (method > 1) return invalid("an unknown encoding method");
+  if (type != 1) return invalid_draco("not a triangular mesh");
+  if (method > 1) return invalid_draco("an unknown encoding method");
   if ((flags & 0x8000u) != 0) {
     const std::uint32_t attribute_count = head.varint();
     for (std::uint32_t i = 0; head.ok() && i < attribute_count; ++i) {
@@ -126,20 +127,20 @@ Result<Method> check_head(std::span<const std::uint8_t> bytes, const DracoExpect
     head.byte();  // attribute data count
     const std::uint64_t symbols = head.varint();
     const std::uint64_t splits = head.varint();
-    if (symbols > faces || splits > symbols) return invalid("counts that contradict each other");
+    if (symbols > faces || splits > symbols) return invalid_draco("counts that contradict each other");
   } else {
     faces = head.varint();
     points = head.varint();
   }
-  if (!head.ok()) return invalid("the header is cut short");
+  if (!head.ok()) return invalid_draco("the header is cut short");
   if (faces > expected.max_face_count || (expected.is_face_count_exact && faces != expected.max_face_count)) {
-    return invalid("the stream has " + std::to_string(faces) + " triangles where the accessors say " +
-                   std::to_string(expected.max_face_count));
+    return invalid_draco("the stream has " + std::to_string(faces) + " triangles where the accessors say " +
+                         std::to_string(expected.max_face_count));
   }
   // Edgebreaker's vertices are split along seams afterwards; sequential points are final.
   if (points > expected.point_count || (method == 0 && points != expected.point_count)) {
-    return invalid("the stream has " + std::to_string(points) + " points where the accessors say " +
-                   std::to_string(expected.point_count));
+    return invalid_draco("the stream has " + std::to_string(points) + " points where the accessors say " +
+                         std::to_string(expected.point_count));
   }
   return method == 1 ? Method::kEdgebreaker : Method::kSequential;
 }
@@ -320,19 +321,19 @@ Result<DracoAttribute> copy_attribute(const draco::PointAttribute& attribute, st
   out.component_count = static_cast<std::uint32_t>(attribute.num_components());
   const std::uint64_t size = std::uint64_t{component_size(out.component_type)} * out.component_count;
   if (out.component_type == 0 || out.component_count < 1 || out.component_count > 4) {
-    return invalid("an attribute of a type that glTF does not have");
+    return invalid_draco("an attribute of a type that glTF does not have");
   }
   if (attribute.buffer() == nullptr || attribute.byte_stride() != static_cast<std::int64_t>(size)) {
-    return invalid("an attribute without data");
+    return invalid_draco("an attribute without data");
   }
   out.bytes.resize(size * point_count);
   const std::uint64_t available = attribute.buffer()->data_size();
   for (std::uint32_t p = 0; p < point_count; ++p) {
     if (!attribute.is_mapping_identity() && p >= attribute.indices_map_size())
-      return invalid("a map that is too short");
+      return invalid_draco("a map that is too short");
     const std::uint64_t value = attribute.mapped_index(draco::PointIndex(p)).value();
     if (value >= attribute.size() || value * size > available || size > available - value * size) {
-      return invalid("an attribute value out of range");
+      return invalid_draco("an attribute value out of range");
     }
     std::memcpy(out.bytes.data() + p * size, attribute.buffer()->data() + value * size, size);
   }
@@ -347,11 +348,11 @@ Status run_draco(Method method, std::span<const std::uint8_t> bytes, const Draco
     const bool ok = method == Method::kEdgebreaker
                         ? run_decoder<draco::MeshEdgebreakerDecoder>(bytes, expected, mesh, problem)
                         : run_decoder<draco::MeshSequentialDecoder>(bytes, expected, mesh, problem);
-    if (!ok) return invalid(problem + " (or its counts are not the accessors')");
+    if (!ok) return invalid_draco(problem + " (or its counts are not the accessors')");
   } catch (const std::bad_alloc&) {
     return out_of_memory({});
   } catch (const std::exception& error) {
-    return invalid(error.what());
+    return invalid_draco(error.what());
   }
   return Ok{};
 }
@@ -364,20 +365,20 @@ Result<DracoMesh> decode_draco(std::span<const std::uint8_t> bytes, const DracoE
   TRY(run_draco(*method, bytes, expected, mesh));
   if (mesh.num_points() != expected.point_count ||
       (expected.is_face_count_exact && mesh.num_faces() != expected.max_face_count)) {
-    return invalid("it decodes to other counts than the accessors say");
+    return invalid_draco("it decodes to other counts than the accessors say");
   }
   DracoMesh out;
   out.point_count = mesh.num_points();
   out.indices.reserve(std::size_t{3} * mesh.num_faces());
   for (draco::FaceIndex f(0); f < mesh.num_faces(); ++f) {
     for (const draco::PointIndex& point : mesh.face(f)) {
-      if (point.value() >= out.point_count) return invalid("an index out of range");
+      if (point.value() >= out.point_count) return invalid_draco("an index out of range");
       out.indices.push_back(point.value());
     }
   }
   for (const std::uint32_t id : expected.attribute_ids) {
     const draco::PointAttribute* attribute = mesh.GetAttributeByUniqueId(id);
-    if (attribute == nullptr) return invalid("there is no attribute " + std::to_string(id));
+    if (attribute == nullptr) return invalid_draco("there is no attribute " + std::to_string(id));
     TRY_LET(copied, copy_attribute(*attribute, out.point_count));
     out.attributes.emplace(id, std::move(*copied));
   }

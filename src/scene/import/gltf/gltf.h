@@ -15,12 +15,12 @@
 
 #include "base/file.h"
 #include "base/hash.h"
+#include "base/ids.h"
 #include "scene/import/gltf/tinygltf.h"
 #include "scene/import/json.h"
 
 namespace meshlode::scene {
 
-constexpr std::uint32_t kNoIndex = 0xFFFFFFFFu;
 /// Of glTF text, the file's and what tinygltf reads: it takes the length as an unsigned int, and keeps indices, counts
 /// of sparse elements and their offsets in an int. A list in less text than this has fewer than 2^31 elements.
 constexpr std::uint64_t kMaxTextBytes = 0x7FFFFFFFu;

@@ -76,7 +76,7 @@ std::vector<TextureUse> read_texture_uses(const Json& json, const std::vector<st
     if (known != roles.end()) use.role = known->second;
     use.texture = id_below(reference.texture, images.size());
     if (use.texture != kNoId) use.image = images[use.texture];
-    use.uv_set = static_cast<std::uint32_t>(std::min<std::uint64_t>(reference.uv_set, kNoIndex));
+    use.uv_set = static_cast<std::uint32_t>(std::min<std::uint64_t>(reference.uv_set, kNoId));
     use.offset = reference.offset;
     use.scale = reference.scale;
     use.rotation = reference.rotation;

@@ -14,7 +14,7 @@ namespace meshlode::scene {
 
 namespace {
 
-Error invalid(std::string detail) {
+Error invalid_stream(std::string detail) {
   return {ErrorCode::kInvalid, "", "meshoptimizer: " + std::move(detail)};
 }
 
@@ -36,8 +36,8 @@ Codec codec_of(MeshoptMode mode) {
 
 Status check_head(std::span<const std::uint8_t> stream, const MeshoptLayout& layout) {
   const Codec codec = codec_of(layout.mode);
-  if (stream.empty()) return invalid("the stream is empty");
-  if ((stream[0] & 0xF0U) != codec.kind) return invalid(std::string("this is no ") + codec.name + " stream");
+  if (stream.empty()) return invalid_stream("the stream is empty");
+  if ((stream[0] & 0xF0U) != codec.kind) return invalid_stream(std::string("this is no ") + codec.name + " stream");
   const unsigned version = stream[0] & 0x0FU;
   if (version > codec.newest) {
     return Error{ErrorCode::kUnsupported, "",
@@ -45,8 +45,8 @@ Status check_head(std::span<const std::uint8_t> stream, const MeshoptLayout& lay
                      " codec is not supported, only up to " + std::to_string(codec.newest)};
   }
   if (layout.size_bytes() / kMeshoptMaxExpansion > stream.size()) {
-    return invalid(std::to_string(stream.size()) + " bytes are too few for " + std::to_string(layout.count) +
-                   " elements of " + std::to_string(layout.stride));
+    return invalid_stream(std::to_string(stream.size()) + " bytes are too few for " + std::to_string(layout.count) +
+                          " elements of " + std::to_string(layout.stride));
   }
   return Ok{};
 }
@@ -74,8 +74,8 @@ bool is_sound(const MeshoptLayout& layout) {
 
 Result<std::vector<std::uint8_t>> decode_meshopt(std::span<const std::uint8_t> stream, const MeshoptLayout& layout) {
   TRY(check_head(stream, layout));
-  const Error broken = invalid("a stream that is broken or not of " + std::to_string(layout.count) + " elements of " +
-                               std::to_string(layout.stride) + " bytes");
+  const Error broken = invalid_stream("a stream that is broken or not of " + std::to_string(layout.count) +
+                                      " elements of " + std::to_string(layout.stride) + " bytes");
   std::vector<std::uint8_t> out;
   if (layout.mode == MeshoptMode::kAttributes) {
     out.resize(layout.size_bytes());
@@ -91,7 +91,8 @@ Result<std::vector<std::uint8_t>> decode_meshopt(std::span<const std::uint8_t> s
   out.resize(layout.size_bytes());
   for (std::size_t i = 0; i < indices.size(); ++i) {
     if (layout.stride == 2 && indices[i] > 0xFFFFU) {
-      return invalid("index " + std::to_string(indices[i]) + " at " + std::to_string(i) + " does not fit 16 bits");
+      return invalid_stream("index " + std::to_string(indices[i]) + " at " + std::to_string(i) +
+                            " does not fit 16 bits");
     }
     std::memcpy(out.data() + i * layout.stride, &indices[i], layout.stride);  // little-endian: the low bytes first
   }

@@ -13,7 +13,7 @@ namespace meshlode::scene {
 namespace {
 
 /// A file may have both, for readers of one of them; EXT_'s streams are never newer.
-constexpr std::array<std::string_view, 2> kNames{"EXT_meshopt_compression", "KHR_meshopt_compression"};
+constexpr std::array<std::string_view, 2> kExtensionNames{"EXT_meshopt_compression", "KHR_meshopt_compression"};
 
 constexpr std::array<std::pair<std::string_view, MeshoptMode>, 3> kModes{{{"ATTRIBUTES", MeshoptMode::kAttributes},
                                                                           {"TRIANGLES", MeshoptMode::kTriangles},
@@ -38,7 +38,7 @@ struct Extension {
 /// Of a buffer or a buffer view.
 Extension find_extension(const Json& object) {
   const Json* extensions = object.find("extensions");
-  for (const std::string_view name : kNames) {
+  for (const std::string_view name : kExtensionNames) {
     const Json* json = extensions != nullptr ? extensions->find(name) : nullptr;
     if (json != nullptr) return {json, name};
   }

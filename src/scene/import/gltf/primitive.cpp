@@ -351,7 +351,7 @@ Status PrimitiveReader::read_weights(VertexWeights& out) {
       const auto j = joints->element(source_vertex(i));
       const auto w = weights->element(source_vertex(i));
       for (std::size_t c = 0; c < 4; ++c) {
-        out.joints.push_back(j[c] >= 0.0 && j[c] < kNoIndex ? static_cast<std::uint32_t>(j[c]) : kNoIndex);
+        out.joints.push_back(j[c] >= 0.0 && j[c] < kNoId ? static_cast<std::uint32_t>(j[c]) : kNoId);
         out.weights.push_back(w[c]);
       }
     }

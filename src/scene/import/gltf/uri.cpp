@@ -16,7 +16,7 @@ namespace meshlode::scene {
 
 namespace {
 
-Error invalid(std::string detail) {
+Error invalid_uri(std::string detail) {
   return {ErrorCode::kInvalid, "", std::move(detail)};
 }
 
@@ -67,7 +67,7 @@ Result<std::vector<std::uint8_t>> percent_decode_bytes(std::string_view body) {
     }
     const int high = i + 2 < body.size() ? hex_digit(body[i + 1]) : -1;
     const int low = i + 2 < body.size() ? hex_digit(body[i + 2]) : -1;
-    if (high < 0 || low < 0) return invalid("a broken percent escape in a data URI");
+    if (high < 0 || low < 0) return invalid_uri("a broken percent escape in a data URI");
     out.push_back(static_cast<std::uint8_t>(high * 16 + low));
     i += 2;
   }
@@ -108,14 +108,14 @@ bool is_data_uri(std::string_view uri) {
 
 Result<std::vector<std::uint8_t>> base64_decode(std::string_view text) {
   while (!text.empty() && text.back() == '=') text.remove_suffix(1);
-  if (text.size() % 4 == 1) return invalid("base64 of an impossible length");
+  if (text.size() % 4 == 1) return invalid_uri("base64 of an impossible length");
   std::vector<std::uint8_t> out;
   out.reserve(text.size() / 4 * 3 + 2);
   std::uint32_t bits = 0;
   unsigned bit_count = 0;
   for (std::size_t i = 0; i < text.size(); ++i) {
     const std::int8_t digit = kBase64[static_cast<unsigned char>(text[i])];
-    if (digit < 0) return invalid("a character that is not base64, at " + std::to_string(i));
+    if (digit < 0) return invalid_uri("a character that is not base64, at " + std::to_string(i));
     bits = (bits << 6U) | static_cast<std::uint32_t>(digit);
     bit_count += 6;
     if (bit_count >= 8) {
@@ -135,11 +135,11 @@ Result<std::string> percent_decode(std::string_view text) {
     if (c == '%') {
       const int high = i + 2 < text.size() ? hex_digit(text[i + 1]) : -1;
       const int low = i + 2 < text.size() ? hex_digit(text[i + 2]) : -1;
-      if (high < 0 || low < 0) return invalid("a broken percent escape in a URI");
+      if (high < 0 || low < 0) return invalid_uri("a broken percent escape in a URI");
       c = static_cast<char>(high * 16 + low);
       i += 2;
     }
-    if (c == '\0') return invalid("a NUL byte in a URI");
+    if (c == '\0') return invalid_uri("a NUL byte in a URI");
     out.push_back(c);
   }
   return out;
@@ -147,7 +147,7 @@ Result<std::string> percent_decode(std::string_view text) {
 
 Result<DataUri> decode_data_uri(std::string_view uri) {
   const std::size_t comma = uri.find(',');
-  if (comma == std::string_view::npos) return invalid("a data URI without a comma");
+  if (comma == std::string_view::npos) return invalid_uri("a data URI without a comma");
   std::string_view header = uri.substr(5, comma - 5);
   std::string_view body = uri.substr(comma + 1);
   DataUri out;
@@ -198,7 +198,7 @@ Result<std::filesystem::path> resolve_uri(const std::filesystem::path& folder, s
   const Error not_read{ErrorCode::kUnsupported, "",
                        "only data URIs and paths are read, not \"" + shown_name(uri) + "\""};
   if (paths.empty() && !uri.empty()) return not_read;
-  if (paths.empty()) return invalid("an empty URI");
+  if (paths.empty()) return invalid_uri("an empty URI");
   std::optional<Error> first;
   for (const std::string& path : paths) {
     auto found = resolve_below(folder, path, allowed);
@@ -213,7 +213,7 @@ Result<std::filesystem::path> resolve_uri(const std::filesystem::path& folder, s
 Result<std::filesystem::path> resolve_below(const std::filesystem::path& folder, const std::string& path,
                                             std::span<const std::filesystem::path> allowed) {
   namespace fs = std::filesystem;
-  if (path.find('\0') != std::string::npos) return invalid("a NUL byte in a path");
+  if (path.find('\0') != std::string::npos) return invalid_uri("a NUL byte in a path");
   const fs::path tidy = fs::path(path).lexically_normal();
   std::error_code error;
   const fs::path root = fs::canonical(folder.empty() ? fs::path(".") : folder, error);
@@ -231,13 +231,15 @@ Result<std::filesystem::path> resolve_below(const std::filesystem::path& folder,
     roots.push_back(real);
   }
   if (!is_allowed && tidy.is_absolute())
-    return invalid("an absolute path, in no folder of --allow-outside: \"" + shown_name(path) + "\"");
+    return invalid_uri("an absolute path, in no folder of --allow-outside: \"" + shown_name(path) + "\"");
   if (!is_allowed)
-    return invalid("a path that leaves the scene's folder, into none of --allow-outside: \"" + shown_name(path) + "\"");
+    return invalid_uri("a path that leaves the scene's folder, into none of --allow-outside: \"" + shown_name(path) +
+                       "\"");
   const fs::path file = fs::canonical(where, error);
   if (error) return Error{ErrorCode::kIo, "", "cannot open \"" + shown_name(path) + "\": " + error.message()};
   if (std::none_of(roots.begin(), roots.end(), [&](const fs::path& each) { return is_below(each, file); })) {
-    return invalid("a link that leaves the scene's folder, into none of --allow-outside: \"" + shown_name(path) + "\"");
+    return invalid_uri("a link that leaves the scene's folder, into none of --allow-outside: \"" + shown_name(path) +
+                       "\"");
   }
   return file;
 }

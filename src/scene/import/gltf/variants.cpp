@@ -78,7 +78,7 @@ Json::Array variant_primitives(const GltfAsset& asset, std::size_t m, std::vecto
     const Json* variants = find_variants(primitive);
     has_any = has_any || variants != nullptr;
     std::string text = variants != nullptr ? dump_json(*variants) : std::string();
-    const auto [known, is_new] = by_material.try_emplace(index_or(primitive, "material", kNoIndex));
+    const auto [known, is_new] = by_material.try_emplace(index_or(primitive, "material", kNoId));
     if (is_new) {
       known->second = {std::move(text), variants, true};
     } else {
@@ -90,7 +90,7 @@ Json::Array variant_primitives(const GltfAsset& asset, std::size_t m, std::vecto
   for (const auto& [material, mapped] : by_material) {
     if (!mapped.is_one) {
       left_out.push_back({"mesh " + std::to_string(m) + " " + std::string(kVariants) +
-                              (material == kNoIndex ? "" : " of material " + std::to_string(material)),
+                              (material == kNoId ? "" : " of material " + std::to_string(material)),
                           "primitives of one material have different mappings, and are one in the asset"});
       continue;
     }
@@ -98,7 +98,7 @@ Json::Array variant_primitives(const GltfAsset& asset, std::size_t m, std::vecto
     Json extensions = Json::make_object();
     extensions.set(kVariants, *mapped.variants);
     Json primitive = Json::make_object();
-    if (material != kNoIndex) primitive.set("material", Json::make_index(material));
+    if (material != kNoId) primitive.set("material", Json::make_index(material));
     primitive.set("extensions", std::move(extensions));
     out.push_back(std::move(primitive));
   }
@@ -110,7 +110,7 @@ void keep_uv_sets_of_variants(const GltfAsset& asset, std::vector<SceneMaterial>
   for (const Json& mesh : asset.root.items("meshes")) {
     for (const Json& primitive : mesh.items("primitives")) {
       const Json* variants = find_variants(primitive);
-      const std::uint64_t base = index_or(primitive, "material", kNoIndex);
+      const std::uint64_t base = index_or(primitive, "material", kNoId);
       if (variants == nullptr || base >= materials.size()) continue;
       for (const Json& mapping : variants->items("mappings")) {
         materials[base].uv_sets_used |= own[index_or(mapping, "material", 0)].uv_sets_used;

@@ -15,16 +15,16 @@
 #include <numeric>
 #include <utility>
 
+#include "base/ids.h"
+
 namespace meshlode::scene {
 
 namespace {
 
-constexpr std::uint32_t kNone = 0xFFFFFFFFU;
-
 /// What a face of the triangulation is to the polygon.
 struct FaceInfo {
   bool is_known = false, is_inside = false;
-  std::array<std::uint32_t, 3> corners{kNone, kNone, kNone};
+  std::array<std::uint32_t, 3> corners{kNoId, kNoId, kNoId};
 };
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
@@ -102,7 +102,7 @@ class Triangulator {
       vertices_[number]->info() = number;
       near = vertices_[number]->face();
     }
-    cdt_.infinite_vertex()->info() = kNone;
+    cdt_.infinite_vertex()->info() = kNoId;
   }
 
   [[nodiscard]] Edge side(std::size_t corner) const {
