@@ -2,11 +2,11 @@
 #include "lab/samples/write_glb.h"
 
 #include <algorithm>
-#include <bit>
-#include <cmath>
-#include <cstring>
+#include <optional>
+#include <utility>
 
 #include "base/json_writer.h"
+#include "lab/samples/binary_chunk.h"
 
 namespace meshlode::lab {
 
@@ -14,164 +14,11 @@ using namespace scene;
 
 namespace {
 
-constexpr std::uint32_t kByte = 5120, kUnsignedShort = 5123, kShort = 5122, kUnsignedInt = 5125, kFloat = 5126;
-constexpr std::uint32_t kArrayBuffer = 34962, kElementArrayBuffer = 34963;
-
-struct View {
-  std::size_t offset = 0, bytes = 0;
-  std::uint32_t stride = 0, target = 0;  ///< 0: not written
-};
-
-struct Accessor {
-  std::uint32_t view = 0, component = kFloat;
-  std::size_t count = 0;
-  const char* type = "SCALAR";
-  bool normalized = false;
-  std::vector<double> low, high;  ///< empty: not written
-};
-
-/// How a quantized mesh is scaled back: position = center + scale · stored.
-struct Dequantization {
-  Vec3d center{0.0};
-  double scale = 1.0;
-};
-
 struct PrimitiveAccessors {
   std::uint32_t indices = 0, position = 0;
   std::optional<std::uint32_t> normal, uv;
   std::uint32_t material = 0;
 };
-
-class BinaryChunk {
- public:
-  std::vector<View> views;
-  std::vector<Accessor> accessors;
-  std::vector<std::uint8_t> bytes;
-
-  template <class T>
-  void put(T value) {
-    static_assert(std::endian::native == std::endian::little);
-    const std::size_t at = bytes.size();
-    bytes.resize(at + sizeof value);
-    std::memcpy(&bytes[at], &value, sizeof value);
-  }
-
-  /// Starts a view at a multiple of 4; end_view() closes it.
-  void begin_view(std::uint32_t stride, std::uint32_t target) {
-    pad(4);
-    views.push_back({bytes.size(), 0, stride, target});
-  }
-  std::uint32_t end_view() {
-    views.back().bytes = bytes.size() - views.back().offset;
-    return static_cast<std::uint32_t>(views.size() - 1);
-  }
-  std::uint32_t add_accessor(Accessor accessor) {
-    accessors.push_back(std::move(accessor));
-    return static_cast<std::uint32_t>(accessors.size() - 1);
-  }
-  void pad(std::size_t multiple) {
-    while (bytes.size() % multiple != 0) bytes.push_back(0);
-  }
-};
-
-void widen(Accessor& accessor, const double* values, int count) {
-  if (accessor.low.empty()) {
-    accessor.low.assign(values, values + count);
-    accessor.high = accessor.low;
-  }
-  for (int k = 0; k < count; ++k) {
-    accessor.low[k] = std::min(accessor.low[k], values[k]);
-    accessor.high[k] = std::max(accessor.high[k], values[k]);
-  }
-}
-
-std::int32_t round_to(double value, double scale) {
-  return static_cast<std::int32_t>(std::floor(value * scale + 0.5));
-}
-
-Dequantization dequantization_of(const GlbMesh& mesh) {
-  Dequantization out;
-  if (!mesh.quantize) return out;
-  Vec3d low = mesh.primitives.at(0).positions.at(0), high = low;
-  for (const Primitive& primitive : mesh.primitives) {
-    for (const Vec3d& p : primitive.positions) {
-      low = glm::min(low, p);
-      high = glm::max(high, p);
-    }
-  }
-  out.center = 0.5 * (low + high);
-  const Vec3d half = 0.5 * (high - low);
-  out.scale = std::max({half.x, half.y, half.z, 1e-30});
-  return out;
-}
-
-std::uint32_t write_positions(BinaryChunk& chunk, const Primitive& primitive, bool quantize, const Dequantization& dq) {
-  Accessor accessor{0, quantize ? kShort : kFloat, primitive.positions.size(), "VEC3", quantize, {}, {}};
-  chunk.begin_view(quantize ? 8 : 12, kArrayBuffer);
-  for (const Vec3d& p : primitive.positions) {
-    double stored[3];
-    for (int k = 0; k < 3; ++k) {
-      if (quantize) {
-        const std::int32_t q = round_to((p[k] - dq.center[k]) / dq.scale, 32767.0);
-        chunk.put(static_cast<std::int16_t>(q));
-        stored[k] = q;
-      } else {
-        const auto f = static_cast<float>(p[k]);
-        chunk.put(f);
-        stored[k] = static_cast<double>(f);
-      }
-    }
-    if (quantize) chunk.put(std::int16_t{0});
-    widen(accessor, stored, 3);
-  }
-  accessor.view = chunk.end_view();
-  return chunk.add_accessor(std::move(accessor));
-}
-
-std::uint32_t write_normals(BinaryChunk& chunk, const Primitive& primitive, bool quantize) {
-  chunk.begin_view(quantize ? 4 : 12, kArrayBuffer);
-  for (const Vec3f& n : primitive.normals) {
-    for (int k = 0; k < 3; ++k) {
-      if (quantize) {
-        chunk.put(static_cast<std::int8_t>(round_to(static_cast<double>(n[k]), 127.0)));
-      } else {
-        chunk.put(n[k]);
-      }
-    }
-    if (quantize) chunk.put(std::int8_t{0});
-  }
-  return chunk.add_accessor(
-      {chunk.end_view(), quantize ? kByte : kFloat, primitive.normals.size(), "VEC3", quantize, {}, {}});
-}
-
-std::uint32_t write_uvs(BinaryChunk& chunk, const Primitive& primitive, bool quantize) {
-  chunk.begin_view(quantize ? 4 : 8, kArrayBuffer);
-  for (const Vec2f& uv : primitive.uvs[0]) {
-    for (int k = 0; k < 2; ++k) {
-      if (quantize) {
-        chunk.put(static_cast<std::uint16_t>(round_to(static_cast<double>(uv[k]), 65535.0)));
-      } else {
-        chunk.put(uv[k]);
-      }
-    }
-  }
-  const std::size_t count = primitive.uvs[0].size();
-  return chunk.add_accessor({chunk.end_view(), quantize ? kUnsignedShort : kFloat, count, "VEC2", quantize, {}, {}});
-}
-
-std::uint32_t write_indices(BinaryChunk& chunk, const Primitive& primitive) {
-  const bool is_short = primitive.positions.size() <= 65535;  // 65535 itself would be the restart value
-  chunk.begin_view(0, kElementArrayBuffer);
-  for (const std::uint32_t index : primitive.indices) {
-    if (is_short) {
-      chunk.put(static_cast<std::uint16_t>(index));
-    } else {
-      chunk.put(index);
-    }
-  }
-  const std::uint32_t component = is_short ? kUnsignedShort : kUnsignedInt;
-  return chunk.add_accessor({chunk.end_view(), component, primitive.indices.size(), "SCALAR", false, {}, {}});
-}
 
 void number_array(JsonWriter& json, const char* name, const auto& numbers) {
   json.key(name);
@@ -400,7 +247,7 @@ void write_chunk_tables(JsonWriter& json, const BinaryChunk& chunk) {
   json.end_array();
   json.key("bufferViews");
   json.begin_array();
-  for (const View& view : chunk.views) {
+  for (const BufferView& view : chunk.views) {
     json.begin_object();
     json.field("buffer", 0);
     json.field("byteOffset", view.offset);
