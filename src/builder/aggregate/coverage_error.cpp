@@ -68,7 +68,7 @@ ViewResult look(std::span<const SampleMask> leaves, const Lattice& lattice, std:
     }
     if (is_any_open) {
       const std::vector<SampleMask> masks = group_masks(leaves, levels[level]);
-      const Cover cover = cover_of(masks);
+      const CoverCount cover = cover_of(masks);
       parallel_for_each_index(end - first, 1, [&](std::size_t i) {
         const Trial& trial = trials[first + i];
         const std::size_t octaves = trial.octaves_at(step);

@@ -97,10 +97,10 @@ SampleMask mask_of(const Lattice& lattice, const View& view, std::span<const Cor
   return mask;
 }
 
-Cover cover_of(std::span<const SampleMask> groups) {
+CoverCount cover_of(std::span<const SampleMask> groups) {
   MaskBox box;
   for (const SampleMask& group : groups) box.include(group.box());
-  Cover cover{SampleMask(box), SampleMask(box)};
+  CoverCount cover{SampleMask(box), SampleMask(box)};
   for (const SampleMask& group : groups) {
     const MaskBox& own = group.box();
     if (own.is_empty()) continue;
@@ -117,7 +117,7 @@ Cover cover_of(std::span<const SampleMask> groups) {
   return cover;
 }
 
-Change change_of(const SampleMask& before, const SampleMask& after, const Cover& cover, std::size_t octaves,
+Change change_of(const SampleMask& before, const SampleMask& after, const CoverCount& cover, std::size_t octaves,
                  unsigned halvings) {
   MaskBox box = before.box();
   box.include(after.box());

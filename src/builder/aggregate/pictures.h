@@ -61,11 +61,11 @@ using Squares = std::vector<std::int64_t>;
 [[nodiscard]] SampleMask mask_of(const Lattice& lattice, const View& view, std::span<const Corners> triangles);
 
 /// Which samples at least one group of a level covers, and which at least two.
-struct Cover {
+struct CoverCount {
   SampleMask once, twice;
 };
 
-[[nodiscard]] Cover cover_of(std::span<const SampleMask> groups);
+[[nodiscard]] CoverCount cover_of(std::span<const SampleMask> groups);
 
 /// What one proposal changes.
 struct Change {
@@ -75,7 +75,7 @@ struct Change {
 
 /// `before`: the group's own samples; `cover`: of all groups before. `halvings`: the smallest pixels are so many
 /// octaves above kPixelBlocks.
-[[nodiscard]] Change change_of(const SampleMask& before, const SampleMask& after, const Cover& cover,
+[[nodiscard]] Change change_of(const SampleMask& before, const SampleMask& after, const CoverCount& cover,
                                std::size_t octaves, unsigned halvings = 0);
 [[nodiscard]] Squares squares_of_all(const SampleMask& all, std::size_t octaves, unsigned halvings = 0);
 
