@@ -162,8 +162,9 @@ bool BoundedSearch::is_near_throughout(const std::array<Vec3d, 3>& corners, Tree
   const SurfaceTree::Hit hit = tree_.look_around(at, place);
   if (!(hit.distance2 <= tree_.squared_in_frame(beyond_))) return false;
   // Floats are off by a share of the extent, and what is beyond may be a small one.
+  const TriangleDistance distance(tree_.corners_at(hit.slot));
   return std::all_of(corners.begin(), corners.end(),
-                     [&](const Vec3d& p) { return tree_.distance2_at(p, hit.slot) <= beyond_ * beyond_; });
+                     [&](const Vec3d& p) { return distance.squared_to(p) <= beyond_ * beyond_; });
 }
 
 SurfaceTree::Hit BoundedSearch::find_near(const Corner& corner, float enough) const {
@@ -189,8 +190,9 @@ bool BoundedSearch::is_within(Part& part) {
   LinearBounds bounds;
   const auto bound_by = [&](TreeSlot slot) {
     if (!slot.is_valid() || bounds.has(slot)) return false;
+    const TriangleDistance distance(tree_.corners_at(slot));
     for (std::size_t k = 0; k < 3; ++k) {
-      bounds.at_corner[bounds.count][k] = std::sqrt(tree_.distance2_at(part.corner[k].at, slot));
+      bounds.at_corner[bounds.count][k] = std::sqrt(distance.squared_to(part.corner[k].at));
     }
     bounds.of[bounds.count++] = slot;
     return true;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -15,15 +16,19 @@ namespace meshlode::builder {
 using TriangleCorners = std::array<Vec3d, 3>;
 
 [[nodiscard]] inline double longest_edge(const TriangleCorners& c) {
-  return std::max(glm::distance(c[0], c[1]), std::max(glm::distance(c[1], c[2]), glm::distance(c[2], c[0])));
+  const Vec3d ab = c[1] - c[0], bc = c[2] - c[1], ca = c[0] - c[2];
+  return std::sqrt(std::max(glm::dot(ab, ab), std::max(glm::dot(bc, bc), glm::dot(ca, ca))));
 }
 
-[[nodiscard]] inline double point_segment_distance2(const Vec3d& pa, const Vec3d& edge) {
-  const double length2 = glm::dot(edge, edge);
+/// `length2`: of the edge, squared.
+[[nodiscard]] inline double point_segment_distance2(const Vec3d& pa, const Vec3d& edge, double length2) {
   const double along = glm::dot(pa, edge);
   const double t = along > 0.0 && length2 > 0.0 ? std::min(along / length2, 1.0) : 0.0;
   const Vec3d away = pa - edge * t;
   return glm::dot(away, away);
+}
+[[nodiscard]] inline double point_segment_distance2(const Vec3d& pa, const Vec3d& edge) {
+  return point_segment_distance2(pa, edge, glm::dot(edge, edge));
 }
 
 /// A triangle that several points are asked of: what does not depend on them is worked out once.
@@ -36,8 +41,11 @@ class TriangleDistance {
         ac_(corners[2] - corners[0]),
         bc_(corners[2] - corners[1]),
         n_(glm::cross(ab_, ac_)),
-        nn_(glm::dot(n_, n_)) {
-    const double longest2 = std::max(glm::dot(ab_, ab_), std::max(glm::dot(ac_, ac_), glm::dot(bc_, bc_)));
+        nn_(glm::dot(n_, n_)),
+        ab2_(glm::dot(ab_, ab_)),
+        ac2_(glm::dot(ac_, ac_)),
+        bc2_(glm::dot(bc_, bc_)) {
+    const double longest2 = std::max(ab2_, std::max(ac2_, bc2_));
     // Twice the area against the longest edge: a sine. Below 1e-5 the normal begins to feel the rounding, and the
     // inside is that close to the edges anyway.
     has_inside_ = nn_ > 1e-10 * longest2 * longest2;
@@ -54,8 +62,8 @@ class TriangleDistance {
         return glm::dot(away, away);
       }
     }
-    return std::min(point_segment_distance2(pa, ab_),
-                    std::min(point_segment_distance2(pa, ac_), point_segment_distance2(p - b_, bc_)));
+    return std::min(point_segment_distance2(pa, ab_, ab2_),
+                    std::min(point_segment_distance2(pa, ac_, ac2_), point_segment_distance2(p - b_, bc_, bc2_)));
   }
 
   /// False for a needle, a segment or a point: what is nearest lies on an edge then.
@@ -63,7 +71,7 @@ class TriangleDistance {
 
  private:
   Vec3d a_, b_, ab_, ac_, bc_, n_;
-  double nn_;
+  double nn_, ab2_, ac2_, bc2_;
   bool has_inside_;
 };
 

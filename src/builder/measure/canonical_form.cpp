@@ -35,35 +35,42 @@ std::size_t least_turn(const Triangle& t) {
 /// The triangles of one cluster in the order of the places and attributes of their vertices.
 void order_cluster(const LodDag& dag, const DagCluster& cluster, std::size_t stride,
                    std::vector<std::array<std::uint8_t, 3>>& triangles) {
-  const auto is_before = [&](std::uint32_t a, std::uint32_t b) {
-    const Vec3i &p = dag.vertex_position[a], &q = dag.vertex_position[b];
-    if (p.x != q.x) return p.x < q.x;
-    if (p.y != q.y) return p.y < q.y;
-    if (p.z != q.z) return p.z < q.z;
-    return stride > 0 && std::memcmp(&dag.vertex_attributes[a * stride], &dag.vertex_attributes[b * stride],
-                                     stride * sizeof(float)) < 0;
+  struct Vertex {
+    std::uint64_t xy;  // both as numbers that order as the coordinates do, and so is z
+    std::uint32_t z, local;
   };
-  std::vector<std::uint32_t> order(cluster.vertex_count);
-  std::iota(order.begin(), order.end(), cluster.first_vertex);
-  std::sort(order.begin(), order.end(), is_before);
+  const auto is_before = [&](const Vertex& a, const Vertex& b) {
+    if (a.xy != b.xy) return a.xy < b.xy;
+    if (a.z != b.z) return a.z < b.z;
+    return stride > 0 &&
+           std::memcmp(&dag.vertex_attributes[(cluster.first_vertex + a.local) * stride],
+                       &dag.vertex_attributes[(cluster.first_vertex + b.local) * stride], stride * sizeof(float)) < 0;
+  };
+  std::array<Vertex, 256> order;
+  const auto end = order.begin() + cluster.vertex_count;
+  for (std::uint32_t v = 0; v < cluster.vertex_count; ++v) {
+    const auto ordered = [](std::int32_t x) { return static_cast<std::uint32_t>(x) ^ 0x80000000U; };
+    const Vec3i& p = dag.vertex_position[cluster.first_vertex + v];
+    order[v] = {std::uint64_t{ordered(p.x)} << 32U | ordered(p.y), ordered(p.z), v};
+  }
+  std::sort(order.begin(), end, is_before);
   std::array<std::uint8_t, 256> rank{};  // of equal vertices, which quantization may leave, the same
   std::size_t first = 0;
-  for (std::size_t i = 0; i < order.size(); ++i) {
+  for (std::size_t i = 0; i < cluster.vertex_count; ++i) {
     if (is_before(order[first], order[i])) first = i;
-    rank[order[i] - cluster.first_vertex] = static_cast<std::uint8_t>(first);
+    rank[order[i].local] = static_cast<std::uint8_t>(first);
   }
-  std::array<std::uint32_t, 256> keys{};
+  std::array<std::uint32_t, 256> keys;  // three ranks, the least of the triangle's turns
   for (std::uint32_t t = 0; t < cluster.triangle_count; ++t) {
     const auto& local = dag.triangles[cluster.first_triangle + t];
-    const std::array ranks{rank[local[0]], rank[local[1]], rank[local[2]]};
-    const std::size_t turn = least_turn(ranks);
-    for (std::size_t k = 0; k < 3; ++k) keys[t] = keys[t] << 8U | ranks[(turn + k) % 3];
+    const std::uint32_t a = rank[local[0]], b = rank[local[1]], c = rank[local[2]];
+    keys[t] = std::min({a << 16U | b << 8U | c, b << 16U | c << 8U | a, c << 16U | a << 8U | b});
   }
   std::sort(keys.begin(), keys.begin() + cluster.triangle_count);
   for (std::uint32_t t = 0; t < cluster.triangle_count; ++t) {
     for (std::size_t k = 0; k < 3; ++k) {
-      const std::uint32_t vertex = order[keys[t] >> (16U - 8U * k) & 0xFFU];
-      triangles[cluster.first_triangle + t][k] = static_cast<std::uint8_t>(vertex - cluster.first_vertex);
+      const Vertex& vertex = order[keys[t] >> (16U - 8U * k) & 0xFFU];
+      triangles[cluster.first_triangle + t][k] = static_cast<std::uint8_t>(vertex.local);
     }
   }
 }
@@ -76,9 +83,10 @@ std::vector<std::uint32_t> sorted(std::span<const Corners> triangles, std::size_
   std::vector<std::uint32_t> next(end.begin(), end.end() - 1);
   for (std::uint32_t t = 0; t < triangles.size(); ++t) order[next[triangles[t][0]]++] = t;
   parallel_for_each_index(position_count, kLoopGrain, [&](std::size_t p) {
-    std::sort(order.begin() + end[p], order.begin() + end[p + 1], [&](std::uint32_t a, std::uint32_t b) {
-      return triangles[a] != triangles[b] ? triangles[a] < triangles[b] : a < b;
-    });
+    // All of them begin at the same place.
+    const auto others = [&](std::uint32_t t) { return std::uint64_t{triangles[t][1]} << 32U | triangles[t][2]; };
+    std::sort(order.begin() + end[p], order.begin() + end[p + 1],
+              [&](std::uint32_t a, std::uint32_t b) { return others(a) != others(b) ? others(a) < others(b) : a < b; });
   });
   return order;
 }

@@ -46,8 +46,13 @@ struct PartOfMade {
   std::uint32_t divisions = 0;
 };
 
-/// The distance to one triangle is convex: what its corners are near to, all of a part is near to.
-bool is_within_of(const TriangleCorners& below, const TriangleCorners& part, double within) {
+/// The distance to one triangle is convex: what its corners are near to, all of a part is near to. `longest`: edge of
+/// the triangle. Most parts are larger than it, and reach far beyond: that is seen without the triangle's inside.
+bool is_within_of(const TriangleCorners& below, double longest, const TriangleCorners& part, double within) {
+  constexpr double kRounding = 1e-9;  // far more than doubles are off by
+  const double reach = (1.0 + kRounding) * (within + longest);
+  const auto is_beyond = [&](const Vec3d& x) { return glm::dot(x - below[0], x - below[0]) > reach * reach; };
+  if (std::any_of(part.begin(), part.end(), is_beyond)) return false;
   const TriangleDistance distance(below);
   return std::all_of(part.begin(), part.end(),
                      [&](const Vec3d& x) { return distance.squared_to(x) <= within * within; });
@@ -86,7 +91,7 @@ void LevelMeter::ask_vertices(Made& made) const {
 /// The source near to a triangle of the surface is parallel to it and ends nowhere near.
 bool LevelMeter::is_plain(const LevelSurface& surface, std::uint32_t triangle, TreeSlot near) const {
   const std::uint32_t t = source_.impl().tree.triangle_at(near);
-  if (glm::dot(unit_normal(source_.impl().corners(t)), surface.normal[triangle]) < kParallel) return false;
+  if (glm::dot(source_normal_[t], surface.normal[triangle]) < kParallel) return false;
   const std::array<std::uint32_t, 3> corner = source_.impl().vertices(t);
   return std::none_of(corner.begin(), corner.end(), [&](std::uint32_t v) { return units_.is_border(v); });
 }
@@ -119,7 +124,7 @@ void LevelMeter::check_made(const LevelSurface& surface, Made& made) const {
       for (const Vec3d& x : {(a + b + c) / 3.0, 0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a)}) {
         place = find_near(source, x, place, kPromiseBetween * within).slot;
         most = std::max(most, distance_at(source, x, place));
-        const Vec3f normal = unit_normal(impl.corners(source.triangle_at(place)));
+        const Vec3f& normal = source_normal_[source.triangle_at(place)];
         is_between = is_between || glm::dot(normal, surface.normal[k]) < kBetween;
       }
       raise(most);
@@ -133,9 +138,10 @@ void LevelMeter::check_made(const LevelSurface& surface, Made& made) const {
       const auto& [x, y, z] = part.corners;
       const TreeSlot near = find_near(source, (x + y + z) / 3.0, part.near, kNearMiddle * within).slot;
       const TriangleCorners below = impl.corners(source.triangle_at(near));
-      if (is_within_of(below, part.corners, within)) continue;
+      const double longest = longest_edge(below);
+      if (is_within_of(below, longest, part.corners, within)) continue;
       if (part.divisions < kMostDivisions && longest_edge(part.corners) > kDivided * within &&
-          within > kShareOfSource * longest_edge(below)) {
+          within > kShareOfSource * longest) {
         const Vec3d xy = 0.5 * (x + y), yz = 0.5 * (y + z), zx = 0.5 * (z + x);
         for (const TriangleCorners& corners : {TriangleCorners{x, xy, zx}, {xy, y, yz}, {zx, yz, z}, {xy, yz, zx}}) {
           parts.push_back({corners, near, part.divisions + 1});

@@ -65,9 +65,11 @@ void LevelMeter::ask_units(const LevelSurface& surface, UnitChunk& chunk) const 
 
 /// `normal`: of the source triangle.
 void LevelMeter::mark_seen(const LevelSurface& surface, std::uint32_t triangle, const Vec3f& normal, bool is_border) {
+  const std::uint8_t before = seen_[triangle].load(std::memory_order_relaxed);
+  if (before == (kSeen | kOpen)) return;
   const bool is_open = is_border || glm::dot(normal, surface.normal[triangle]) < kParallel;
   const std::uint8_t flags = is_open ? kSeen | kOpen : kSeen;
-  if ((seen_[triangle].load(std::memory_order_relaxed) & flags) == flags) return;
+  if (before == flags) return;
   seen_[triangle].fetch_or(flags, std::memory_order_relaxed);
 }
 
@@ -114,21 +116,22 @@ void LevelMeter::check_units(const LevelSurface& surface, UnitChunk& chunk, std:
       const std::array<NearVertex, 3> n{near[t.corner[0]], near[t.corner[1]], near[t.corner[2]]};
       const std::array<std::uint32_t, 3> k{n[0].triangle, n[1].triangle, n[2].triangle};
       const TriangleCorners corners = source.corners(t.id);
-      const Vec3f normal = unit_normal(corners);
       const double within = owners.known();
+      Vec3f normal(0.0F);
       bool is_at_border = false;
-      for (std::size_t j = 0; j < 3; ++j) {
+      for (std::size_t j = 0; j < 3 && !is_small; ++j) {
+        if (j == 0) normal = source_normal_.empty() ? unit_normal(corners) : source_normal_[t.id];
         const bool is_border = units_.is_border(units_.vertices(unit)[t.corner[j]]);
         mark_seen(surface, k[j], normal, is_border);
         is_at_border = is_at_border || is_border;
       }
-      const float nearest = std::min(n[0].distance, std::min(n[1].distance, n[2].distance));
       if (k[0] == k[1] && k[1] == k[2]) continue;
+      const float nearest = std::min(n[0].distance, std::min(n[1].distance, n[2].distance));
       if (static_cast<double>(nearest) + (1.0 + kSlack) * longest_edge(corners) <= within) continue;
       if (!is_small && !is_at_border && is_flat(surface, corners, normal, k, within)) continue;
       const bool is_within = overlay.is_within(corners, k[0], within);
       for (const std::uint32_t below : overlay.below()) {
-        mark_seen(surface, below, normal, is_at_border);
+        if (!is_small) mark_seen(surface, below, normal, is_at_border);
         const GroupId to = maker(surface, below);
         if (owners.is_one() && to.is_valid() && to.value != chunk.group) {
           chunk.moved.push_back({chunk.group, to.value, t.id, true});

@@ -14,8 +14,9 @@ bool Overlay::is_within(const TriangleCorners& corners, std::uint32_t start, dou
   rest_.clear();
   size_ = 0;
   Piece& all = push();
-  std::copy(corners.begin(), corners.end(), all.polygon.corner.begin());
-  all.polygon.count = 3;
+  all.polygon.count = 0;
+  for (const Vec3d& corner : corners) all.polygon.add(corner);
+  all.polygon.fill_pair();
   all.triangle = start;
   all.entered = 3;
   for (std::size_t pieces = 0; size_ > 0; ++pieces) {
@@ -24,18 +25,18 @@ bool Overlay::is_within(const TriangleCorners& corners, std::uint32_t start, dou
       break;
     }
     const std::size_t top = size_ - 1;
-    cut(top);
-    check(stack_[top]);
+    cut(*stack_[top]);
+    check(*stack_[top]);
     // What was cut off lies above it.
-    if (size_ > top + 1) stack_[top] = stack_[size_ - 1];
+    std::swap(stack_[top], stack_[size_ - 1]);
     --size_;
   }
   return far_.empty() && rest_.empty();
 }
 
 Overlay::Piece& Overlay::push() {
-  if (size_ == stack_.size()) stack_.resize(size_ + 16);
-  return stack_[size_++];
+  if (size_ == stack_.size()) stack_.push_back(&pieces_.emplace_back());
+  return *stack_[size_++];
 }
 
 /// Many pieces lie over one triangle, and neighbours come one after the other.
@@ -76,66 +77,80 @@ const Overlay::Below& Overlay::below_of(std::uint32_t k) {
 }
 
 /// Keeps what lies over the piece's triangle; what lies beyond its edges goes onto the stack.
-void Overlay::cut(std::size_t index) {
-  const std::uint32_t k = stack_[index].triangle, entered = stack_[index].entered;
+MESHLODE_CLONED_FOR_AVX2
+void Overlay::cut(Piece& piece) {
+  const std::uint32_t k = piece.triangle, entered = piece.entered;
   const Below& below = below_of(k);
+  Polygon& whole = piece.polygon;
   for (std::uint32_t e = 0; e < 3; ++e) {
     const std::uint32_t next = surface_.neighbor[k][e];
     if (next == kNoId || e == entered) continue;
     const Vec3d &from = below.corners[e], &outward = below.outward[e];
-    Polygon& p = stack_[index].polygon;
-    std::array<double, kMostCorners> height;
-    bool is_out = false, is_in = false;
-    for (std::uint32_t i = 0; i < p.count; ++i) {
-      height[i] = glm::dot(outward, p.corner[i] - from);
-      is_out = is_out || height[i] > 0.0;
-      is_in = is_in || height[i] < 0.0;
+    std::array<Pair, kMostCorners / 2> heights;
+    Pair most{}, least{};
+    for (std::uint32_t i = 0; 2 * i < whole.count; ++i) {
+      const Pair h = (outward.x * (whole.pair(0, i) - from.x) + outward.y * (whole.pair(1, i) - from.y)) +
+                     outward.z * (whole.pair(2, i) - from.z);
+      heights[i] = h;
+      most = h > most ? h : most;
+      least = h < least ? h : least;
     }
+    if (!(most[0] > 0.0 || most[1] > 0.0)) continue;  // nothing lies beyond: nearly always
+    std::array<double, kMostCorners> height;
+    std::memcpy(height.data(), heights.data(), sizeof(height));
+    const auto next_of = [&](std::uint32_t i) { return i + 1 == whole.count ? 0 : i + 1; };
     std::uint32_t crossings = 0;
-    for (std::uint32_t i = 0; i < p.count; ++i)
-      crossings += (height[i] > 0.0) != (height[i + 1 == p.count ? 0 : i + 1] > 0.0) ? 1 : 0;
+    for (std::uint32_t i = 0; i < whole.count; ++i)
+      crossings += (height[i] > 0.0) != (height[next_of(i)] > 0.0) ? 1 : 0;
     // Rounding can make a sliver cross more than twice: it stays whole, as does what has no room for corners.
-    if (!is_out || crossings > 2 || p.count + 2 > kMostCorners) continue;
+    if (crossings > 2 || whole.count + 2 > kMostCorners) continue;
     Piece& beyond = push();
     beyond.triangle = next / 4;
     beyond.entered = next % 4;
-    Polygon& whole = stack_[index].polygon;
-    if (!is_in) {
+    if (!(least[0] < 0.0 || least[1] < 0.0)) {
       beyond.polygon = whole;
       whole.count = 0;
       return;
     }
     Polygon inside;
     inside.count = beyond.polygon.count = 0;
-    const auto add = [](Polygon& to, const Vec3d& at) { to.corner[to.count++] = at; };
     for (std::uint32_t i = 0; i < whole.count; ++i) {
-      const std::uint32_t j = i + 1 == whole.count ? 0 : i + 1;
-      if (height[i] <= 0.0) add(inside, whole.corner[i]);
-      if (height[i] >= 0.0) add(beyond.polygon, whole.corner[i]);
+      const std::uint32_t j = next_of(i);
+      if (height[i] <= 0.0) inside.add(whole.corner(i));
+      if (height[i] >= 0.0) beyond.polygon.add(whole.corner(i));
       if ((height[i] > 0.0 && height[j] < 0.0) || (height[i] < 0.0 && height[j] > 0.0)) {
-        const Vec3d x = whole.corner[i] + (whole.corner[j] - whole.corner[i]) * (height[i] / (height[i] - height[j]));
-        add(inside, x);
-        add(beyond.polygon, x);
+        const Vec3d x = whole.corner(i) + (whole.corner(j) - whole.corner(i)) * (height[i] / (height[i] - height[j]));
+        inside.add(x);
+        beyond.polygon.add(x);
       }
     }
-    whole.count = inside.count;
-    std::copy_n(inside.corner.begin(), inside.count, whole.corner.begin());
+    inside.fill_pair();
+    beyond.polygon.fill_pair();
+    whole = inside;
   }
 }
 
 /// Whether the corners of a piece are near to the triangle below for certain: where weights of its corners are below 0,
 /// the point with these at 0 is no farther than they are in all times the longest edge. No division a corner, and
 /// hardly a branch: nearly all pieces end here.
+MESHLODE_CLONED_FOR_AVX2
 bool Overlay::is_surely_near(const Polygon& p, const Below& below) const {
-  double most = 0.0;
-  for (std::uint32_t i = 0; i < p.count; ++i) {
-    const Vec3d pa = p.corner[i] - below.corners[0];
-    const double b = glm::dot(below.to_b, pa), c = glm::dot(below.to_c, pa);
-    const double negative = std::max(0.0, -b) + std::max(0.0, -c) + std::max(0.0, b + c - 1.0);
-    most = std::max(most, std::abs(glm::dot(below.up, pa)) + negative * below.longest);
+  const auto dot = [](const Vec3d& n, const std::array<Pair, 3>& at) {
+    return (n.x * at[0] + n.y * at[1]) + n.z * at[2];
+  };
+  const auto positive = [](const Pair& a) { return a > 0.0 ? a : Pair{}; };
+  Pair most{};
+  for (std::uint32_t i = 0; 2 * i < p.count; ++i) {
+    const std::array<Pair, 3> pa{p.pair(0, i) - below.corners[0].x, p.pair(1, i) - below.corners[0].y,
+                                 p.pair(2, i) - below.corners[0].z};
+    const Pair b = dot(below.to_b, pa), c = dot(below.to_c, pa), up = dot(below.up, pa);
+    const Pair negative = (positive(-b) + positive(-c)) + positive(b + c - 1.0);
+    const Pair height = up < 0.0 ? -up : up;
+    const Pair distance = height + negative * below.longest;
+    most = distance > most ? distance : most;
   }
   constexpr double kRounding = 1e-6, kRoundingOfEdge = 1e-8;  // far more than doubles are off by
-  return most <= (1.0 - kRounding) * known_ - kRoundingOfEdge * below.longest;
+  return std::max(most[0], most[1]) <= (1.0 - kRounding) * known_ - kRoundingOfEdge * below.longest;
 }
 
 /// By its corners all of a piece is near to the triangle below, or to what is nearest to one of them; or it is left.
@@ -147,14 +162,14 @@ void Overlay::check(const Piece& piece) {
   if (is_surely_near(p, triangle)) return;
   const auto squared_bound = [&p](const TriangleDistance& distance) {
     double most2 = 0.0;
-    for (std::uint32_t i = 0; i < p.count; ++i) most2 = std::max(most2, distance.squared_to(p.corner[i]));
+    for (std::uint32_t i = 0; i < p.count; ++i) most2 = std::max(most2, distance.squared_to(p.corner(i)));
     return most2;
   };
   const TriangleDistance below(triangle.corners);
   double bound2 = squared_bound(below);
   if (bound2 <= known_ * known_) return;
   for (std::uint32_t i = 0; i < p.count; ++i) {
-    const Vec3d& x = p.corner[i];
+    const Vec3d x = p.corner(i);
     if (below.squared_to(x) <= known_ * known_) continue;
     const SurfaceTree& tree = surface_.tree;
     const Vec3f at = tree.to_frame(x);
@@ -173,7 +188,7 @@ void Overlay::check(const Piece& piece) {
 void Overlay::leave(const Piece& piece, double bound) {
   const Polygon& p = piece.polygon;
   for (std::uint32_t i = 1; i + 1 < p.count; ++i) {
-    rest_.push_back({{p.corner[0], p.corner[i], p.corner[i + 1]}, piece.triangle, bound});
+    rest_.push_back({{p.corner(0), p.corner(i), p.corner(i + 1)}, piece.triangle, bound});
   }
 }
 

@@ -9,6 +9,8 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
+#include <deque>
 #include <limits>
 #include <span>
 #include <utility>
@@ -16,7 +18,6 @@
 
 #include "base/ids.h"
 #include "base/parallel.h"
-#include "base/unset_vector.h"
 #include "builder/deviation/point_distance.h"
 #include "builder/deviation/surface_tree.h"
 
@@ -113,9 +114,27 @@ class Overlay {
 
  private:
   static constexpr std::uint32_t kMostCorners = 10;
+  /// Two corners side by side. The bits are those of one after the other.
+  using Pair = double __attribute__((vector_size(16)));
+  /// Corners by axis, so that two are looked at at once; where their number is odd, the last one again.
   struct Polygon {
-    std::array<Vec3d, kMostCorners> corner;
+    std::array<std::array<double, kMostCorners>, 3> at;  ///< [axis][corner]
     std::uint32_t count;
+
+    [[nodiscard]] Vec3d corner(std::size_t i) const { return {at[0][i], at[1][i], at[2][i]}; }
+    void add(const Vec3d& x) {
+      for (int axis = 0; axis < 3; ++axis) at[static_cast<std::size_t>(axis)][count] = x[axis];
+      ++count;
+    }
+    void fill_pair() {
+      if (count % 2 == 0) return;
+      for (auto& of_axis : at) of_axis[count] = of_axis[count - 1];
+    }
+    [[nodiscard]] Pair pair(std::size_t axis, std::size_t i) const {
+      Pair two;
+      std::memcpy(&two, &at[axis][2 * i], sizeof(two));
+      return two;
+    }
   };
   struct Piece {
     Polygon polygon;
@@ -135,7 +154,7 @@ class Overlay {
   };
 
   [[nodiscard]] const Below& below_of(std::uint32_t triangle);
-  void cut(std::size_t piece);
+  void cut(Piece& piece);
   Piece& push();
   [[nodiscard]] bool is_surely_near(const Polygon& p, const Below& below) const;
   void check(const Piece& piece);
@@ -144,7 +163,8 @@ class Overlay {
   const LinkedSurface& surface_;
   std::size_t most_pieces_;
   double known_ = 0.0;
-  UnsetVector<Piece> stack_;  ///< as many as there ever were
+  std::deque<Piece> pieces_;   ///< as many as there ever were
+  std::vector<Piece*> stack_;  ///< all of them: first those that are still to be looked at
   std::size_t size_ = 0;
   std::vector<Below> held_;  ///< by the last digits of the triangle
   std::vector<std::uint32_t> below_;
