@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One definition of a name (C++20, [basic.def.odr]): two types of one namespace that have one name, each in a file of its
-// own, go together through compiler and linker without a word, and then one's functions are run on the other.
+// One definition of a name (C++20, [basic.def.odr]): two types of one namespace that have one name, each in a file of
+// its own, go together through compiler and linker without a word, and then one's functions are run on the other.
 #include <map>
 #include <regex>
 #include <sstream>
