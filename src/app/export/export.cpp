@@ -23,6 +23,7 @@
 #include "app/export/float_positions.h"
 #include "app/export/glb_file.h"
 #include "app/export/gltf_document.h"
+#include "app/export/sniff.h"
 #include "app/export/write_primitive.h"
 #include "app/report/read_meta.h"
 #include "base/guarded.h"

@@ -21,14 +21,9 @@ struct Packing {
   bool meshopt = false;
 };
 
-enum : int {
-  kByte = 5120,
-  kUnsignedByte = 5121,
-  kShort = 5122,
-  kUnsignedShort = 5123,
-  kUnsignedInt = 5125,
-  kFloat = 5126
-};
+/// Types of a component (glTF 2.0, 3.6.2.2).
+constexpr int kByte = 5120, kUnsignedByte = 5121, kShort = 5122, kUnsignedShort = 5123, kUnsignedInt = 5125,
+              kFloat = 5126;
 
 /// The elements of an accessor as they lie in a view.
 struct VertexStream {
