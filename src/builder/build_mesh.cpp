@@ -145,10 +145,11 @@ Result<BuiltMesh> build_mesh(const Source& from, std::size_t index, const Survey
 
   Hierarchy hierarchy =
       build_hierarchy(*dag, *mesh, options.hooks != nullptr ? options.hooks->enclosing_ball : enclosing_ball);
-  if (options.page_order == PageOrder::kCovisible) order_by_covisibility(*dag, hierarchy);
+  std::vector<ViewBits> needs;
+  if (options.page_order == PageOrder::kCovisible) needs = order_by_covisibility(*dag, hierarchy);
   built.clock.end(Stage::kHierarchy);
 
-  TRY_LET(encoded, encode_mesh(*mesh, *dag, hierarchy, encoding));
+  TRY_LET(encoded, encode_mesh(*mesh, *dag, hierarchy, encoding, needs));
   built.encoded = std::move(*encoded);
   built.encoded.record.error_tier = own.error_tier;
   if (promises != 0) {

@@ -10,8 +10,8 @@
 
 #include "base/enum_names.h"
 #include "base/printable.h"
-#include "builder/encode/encode.h"
 #include "builder/order/covisible_order.h"
+#include "builder/order/deal_groups.h"
 #include "builder/preset.h"
 
 namespace meshlode::app {
@@ -121,23 +121,27 @@ StreamScene with_layout(const StreamScene& scene, const PageLayout& layout) {
   const std::size_t page_bytes = std::size_t{layout.page_kib} * 1024;
   for (const format::MeshRecord& mesh : scene.meshes) {
     const std::span groups = std::span(scene.groups).subspan(mesh.first_group, mesh.group_count);
-    std::vector<std::uint32_t> order(groups.size());
-    std::iota(order.begin(), order.end(), 0U);
-    if (layout.order == PageOrder::kCovisible) order = builder::covisible_order(groups_of(scene, mesh));
+    builder::CovisibleOrder order;
+    if (layout.order == PageOrder::kCovisible) {
+      order = builder::covisible_order(groups_of(scene, mesh));
+    } else {
+      order.groups.resize(groups.size());
+      std::iota(order.groups.begin(), order.groups.end(), 0U);
+    }
     std::vector<std::size_t> group_bytes;
-    for (const std::uint32_t g : order) {
+    for (const std::uint32_t g : order.groups) {
       const auto first = scene.cluster_bytes.begin() + groups[g].first_cluster;
       group_bytes.push_back(std::accumulate(first, first + groups[g].cluster_count, std::size_t{0}));
     }
     const double share = stored_share(scene, groups);
     const auto first_page = static_cast<std::uint32_t>(out.pages.size());
-    const std::vector<std::uint32_t> page_of =
-        builder::deal_groups(group_bytes, layout.root_bytes > 0 ? layout.root_bytes : page_bytes, page_bytes);
-    for (std::size_t i = 0; i < order.size(); ++i) {
+    const std::vector<std::uint32_t> page_of = builder::deal_groups(
+        group_bytes, layout.root_bytes > 0 ? layout.root_bytes : page_bytes, page_bytes, order.needs);
+    for (std::size_t i = 0; i < order.groups.size(); ++i) {
       const std::uint32_t page = first_page + page_of[i];
       if (page == out.pages.size()) out.pages.push_back({builder::kPageFrameBytes, 0});
       out.pages[page].bytes += static_cast<std::uint32_t>(group_bytes[i]);
-      out.groups[mesh.first_group + order[i]].page = page;
+      out.groups[mesh.first_group + order.groups[i]].page = page;
     }
     for (std::size_t p = first_page; p < out.pages.size(); ++p) {
       out.pages[p].stored_bytes = static_cast<std::uint32_t>(std::lround(share * out.pages[p].bytes));

@@ -234,7 +234,8 @@ GroupWords encode_group(const LodDag& dag, const DagGroup& group, const ChannelP
 }
 
 Result<std::vector<EncodedMesh::Page>> deal_pages(const PreparedMesh& mesh, const LodDag& dag,
-                                                  const EncodeOptions& options, const std::vector<GroupWords>& groups) {
+                                                  const EncodeOptions& options, const std::vector<GroupWords>& groups,
+                                                  std::span<const ViewBits> needs) {
   std::vector<std::size_t> group_bytes;
   group_bytes.reserve(groups.size());
   for (const GroupWords& group : groups) {
@@ -247,7 +248,8 @@ Result<std::vector<EncodedMesh::Page>> deal_pages(const PreparedMesh& mesh, cons
     group_bytes.push_back(group.bytes_in_page);
   }
   std::vector<EncodedMesh::Page> pages;
-  const std::vector<std::uint32_t> page_of = deal_groups(group_bytes, options.first_page_bytes, options.page_bytes);
+  const std::vector<std::uint32_t> page_of =
+      deal_groups(group_bytes, options.first_page_bytes, options.page_bytes, needs);
   for (std::size_t g = 0; g < groups.size(); ++g) {
     if (page_of[g] == pages.size()) {
       pages.emplace_back();
@@ -329,24 +331,8 @@ bool has_aggregates(std::span<const format::GroupRecord> groups) {
                      [](const format::GroupRecord& group) { return (group.flags & format::kGroupAggregate) != 0; });
 }
 
-std::vector<std::uint32_t> deal_groups(std::span<const std::size_t> group_bytes, std::size_t first_page_bytes,
-                                       std::size_t page_bytes) {
-  std::vector<std::uint32_t> page_of(group_bytes.size());
-  std::uint32_t page = 0;
-  std::size_t bytes = kPageFrameBytes;
-  for (std::size_t g = 0; g < group_bytes.size(); ++g) {
-    if (g > 0 && bytes + group_bytes[g] > (page == 0 ? first_page_bytes : page_bytes)) {
-      ++page;
-      bytes = kPageFrameBytes;
-    }
-    bytes += group_bytes[g];
-    page_of[g] = page;
-  }
-  return page_of;
-}
-
 Result<EncodedMesh> encode_mesh(const PreparedMesh& mesh, const LodDag& dag, const Hierarchy& hierarchy,
-                                const EncodeOptions& options) {
+                                const EncodeOptions& options, std::span<const ViewBits> needs) {
   TRY(check_input(mesh, dag, hierarchy, options));
   const ChannelPlan plan = plan_channels(mesh, dag, options);
   TRY(check_uv_steps(mesh, plan, options));
@@ -362,7 +348,7 @@ Result<EncodedMesh> encode_mesh(const PreparedMesh& mesh, const LodDag& dag, con
 
   EncodedMesh out;
   out.record = mesh_record(mesh, dag, plan);
-  TRY_LET(pages, deal_pages(mesh, dag, options, group_words));
+  TRY_LET(pages, deal_pages(mesh, dag, options, group_words, needs));
   out.pages = std::move(*pages);
   parallel_for_each_index(out.pages.size(), 1, [&](std::size_t p) {
     const EncodedMesh::Page& page = out.pages[p];

@@ -14,6 +14,7 @@
 
 #include "builder/hierarchy/hierarchy.h"
 #include "builder/lod_dag.h"
+#include "builder/order/deal_groups.h"
 #include "builder/prepared.h"
 
 namespace meshlode::builder {
@@ -59,14 +60,6 @@ void put_errors(const DagGroup& group, float error, format::GroupRecord& record)
 /// Whether something of them is drawn instead of an aggregate's pieces. A mesh that ended at level 0 has none.
 [[nodiscard]] bool has_aggregates(std::span<const format::GroupRecord> groups);
 
-/// The header of a page and the zero word behind it.
-constexpr std::uint32_t kPageFrameBytes = static_cast<std::uint32_t>(sizeof(format::PageHeader)) + 4U;
-
-/// Which page each group is in, for groups in the order given: as many as fit each page, and one that fits none alone.
-/// \param group_bytes  of all members of each, in the page  \param first_page_bytes, page_bytes  a page is full there
-[[nodiscard]] std::vector<std::uint32_t> deal_groups(std::span<const std::size_t> group_bytes,
-                                                     std::size_t first_page_bytes, std::size_t page_bytes);
-
 /// Upper bound of the bytes that one cluster adds to a page, whatever its coordinates: a group fits a page where
 /// kPageFrameBytes + the sum over its members is at most format::kMaxPageBytes. `material_count` is how many
 /// materials the cluster holds at most.
@@ -75,10 +68,10 @@ constexpr std::uint32_t kPageFrameBytes = static_cast<std::uint32_t>(sizeof(form
                                               std::uint32_t triangle_count = format::kMaxClusterTriangles,
                                               std::uint32_t material_count = 4);
 
-/// Attributes that are not finite become 0 (a normal: +z). Errors: kUnsupported where a group does not fit a page,
-/// naming mesh and group, or where the grid leaves the range of floats; kBuildFailed where the DAG breaks the format's
-/// limits.
+/// Attributes that are not finite become 0 (a normal: +z). `needs`: see deal_groups(). Errors: kUnsupported where a
+/// group does not fit a page, naming mesh and group, or where the grid leaves the range of floats; kBuildFailed where
+/// the DAG breaks the format's limits.
 [[nodiscard]] Result<EncodedMesh> encode_mesh(const PreparedMesh& mesh, const LodDag& dag, const Hierarchy& hierarchy,
-                                              const EncodeOptions& options);
+                                              const EncodeOptions& options, std::span<const ViewBits> needs = {});
 
 }  // namespace meshlode::builder

@@ -24,10 +24,6 @@ namespace meshlode::builder {
 
 namespace {
 
-/// With 1,024 and with 4,096 the working sets of the dragon's paths in pages of 32 KiB are the same within 1%.
-constexpr std::uint32_t kTrainingViews = 2048;
-using ViewBits = std::array<std::uint64_t, kTrainingViews / 64>;
-
 /// A picture of 1080 rows at one pixel, 60 degrees high, 16:9. The distances are relative to the mesh, so that another
 /// picture needs what this one needs from a little further off.
 constexpr double kTanY = 0.57735026918962573, kTanX = kTanY * 16.0 / 9.0;
@@ -297,23 +293,26 @@ OrderedGroups ordered_groups(const LodDag& dag, const Hierarchy& hierarchy) {
 
 }  // namespace
 
-std::vector<std::uint32_t> covisible_order(const OrderedGroups& mesh) {
-  std::vector<std::uint32_t> order(mesh.groups.size());
-  std::iota(order.begin(), order.end(), 0U);
-  if (order.empty()) return order;
+CovisibleOrder covisible_order(const OrderedGroups& mesh) {
+  CovisibleOrder out;
+  out.groups.resize(mesh.groups.size());
+  std::iota(out.groups.begin(), out.groups.end(), 0U);
+  if (out.groups.empty()) return out;
   const std::vector<GroupBounds> bounds = bounds_of(mesh);
-  const std::vector<ViewBits> needs = views_that_need(mesh, bounds);
-  const LevelOrder level(mesh, bounds, needs);
+  out.needs = views_that_need(mesh, bounds);
+  const LevelOrder level(mesh, bounds, out.needs);
   const std::vector<std::size_t> starts = run_starts(mesh.groups);
   parallel_for_each_index(starts.size() - 1, 1, [&](std::size_t run) {
-    level.order(std::span(order).subspan(starts[run], starts[run + 1] - starts[run]), kNoId);
+    level.order(std::span(out.groups).subspan(starts[run], starts[run + 1] - starts[run]), kNoId);
   });
-  return order;
+  permute(out.needs, out.groups);
+  return out;
 }
 
-void order_by_covisibility(LodDag& dag, Hierarchy& hierarchy) {
-  if (dag.groups.empty()) return;
-  apply_order(covisible_order(ordered_groups(dag, hierarchy)), dag, hierarchy);
+std::vector<ViewBits> order_by_covisibility(LodDag& dag, Hierarchy& hierarchy) {
+  CovisibleOrder order = covisible_order(ordered_groups(dag, hierarchy));
+  apply_order(order.groups, dag, hierarchy);
+  return std::move(order.needs);
 }
 
 }  // namespace meshlode::builder

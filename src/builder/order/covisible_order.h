@@ -10,6 +10,7 @@
 
 #include "builder/hierarchy/hierarchy.h"
 #include "builder/lod_dag.h"
+#include "builder/order/deal_groups.h"
 
 namespace meshlode::builder {
 
@@ -30,12 +31,18 @@ struct OrderedGroups {
   std::vector<Cluster> clusters;
 };
 
-/// The groups in their new order, see below.
-[[nodiscard]] std::vector<std::uint32_t> covisible_order(const OrderedGroups& mesh);
+struct CovisibleOrder {
+  std::vector<std::uint32_t> groups;  ///< in their new order
+  std::vector<ViewBits> needs;        ///< of each, in that order
+};
+
+/// See below.
+[[nodiscard]] CovisibleOrder covisible_order(const OrderedGroups& mesh);
 
 /// Orders the groups of each level by which training views need them, found by recursive bisection. Levels never mix
 /// and terminal groups stay first in theirs, so that a group still comes after everything made from it. Both arguments
 /// name groups and clusters by their new ids afterwards. The same order for any thread count.
-void order_by_covisibility(LodDag& dag, Hierarchy& hierarchy);
+/// \return of each group, in the new order
+[[nodiscard]] std::vector<ViewBits> order_by_covisibility(LodDag& dag, Hierarchy& hierarchy);
 
 }  // namespace meshlode::builder
