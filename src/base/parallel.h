@@ -6,13 +6,10 @@
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
-#include <exception>
-
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-#include <tbb/parallel_invoke.h>
-#include <tbb/task_arena.h>
-#include <tbb/task_group.h>
+#include <memory>
+#include <optional>
+#include <type_traits>
+#include <utility>
 
 namespace meshlode {
 
@@ -20,16 +17,36 @@ namespace meshlode {
 constexpr std::size_t kLoopGrain = 4096;
 
 /// How many threads the caller's arena has: for the length of runs that are done at a time, never for an output.
-inline std::size_t thread_limit() {
-  return static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
+std::size_t thread_limit();
+
+/// What parallel.cpp does without knowing the loops: a body is an address, called from task to task and not from turn
+/// to turn. oneTBB's headers take a second to compile, in every file that has a loop.
+namespace threads {
+using Call = void (*)(const void* body);
+using CallOfRange = void (*)(const void* body, std::size_t begin, std::size_t end);
+void run_ranges(std::size_t count, std::size_t grain, CallOfRange call, const void* body);
+void run_in_arena(std::size_t thread_count, Call call, const void* body);
+void run_isolated(Call call, const void* body);
+
+template <class Body>
+void call(const void* body) {
+  (*static_cast<const Body*>(body))();
 }
+}  // namespace threads
 
 /// Runs the body with so many threads at most, and returns what it does.
 template <class Body>
 auto with_threads_at_most(std::size_t count, const Body& body) {
+  using Result = decltype(body());
   if (count >= thread_limit()) return body();
-  tbb::task_arena arena(static_cast<int>(std::max<std::size_t>(1, count)));
-  return arena.execute(body);
+  if constexpr (std::is_void_v<Result>) {
+    threads::run_in_arena(count, threads::call<Body>, std::addressof(body));
+  } else {
+    std::optional<Result> result;
+    const auto fill = [&] { result.emplace(body()); };
+    threads::run_in_arena(count, threads::call<decltype(fill)>, std::addressof(fill));
+    return std::move(*result);
+  }
 }
 
 /// How many chunks of `length` cover `count`.
@@ -37,26 +54,14 @@ constexpr std::size_t chunk_count(std::size_t count, std::size_t length) {
   return (count + length - 1) / length;
 }
 
-/// Out of a loop that oneTBB cut short because a turn of a loop around it has thrown: what it was to fill is not
-/// filled. Outside comes what was thrown first.
-struct LoopCutShort : std::exception {
-  [[nodiscard]] const char* what() const noexcept override { return "a loop around this one has ended"; }
-};
-inline void check_is_whole(tbb::task_group_context& context) {
-  if (context.is_group_execution_cancelled()) throw LoopCutShort();
-}
-
 /// Calls body(i) for i in [0, count), in any order and thread; `body` may write only to what belongs to i.
 template <class Body>
 void parallel_for_each_index(std::size_t count, std::size_t grain, const Body& body) {
-  tbb::task_group_context context;
-  tbb::parallel_for(
-      tbb::blocked_range<std::size_t>(0, count, grain),
-      [&](const tbb::blocked_range<std::size_t>& range) {
-        for (std::size_t i = range.begin(); i != range.end(); ++i) body(i);
-      },
-      context);
-  check_is_whole(context);
+  const auto call = [](const void* address, std::size_t begin, std::size_t end) {
+    const Body& turn = *static_cast<const Body*>(address);
+    for (std::size_t i = begin; i != end; ++i) turn(i);
+  };
+  threads::run_ranges(count, grain, call, std::addressof(body));
 }
 
 /// Calls body(chunk, begin, end) for the chunks of `length` that [0, count) falls into, side by side. What each finds
@@ -72,9 +77,12 @@ void parallel_for_each_chunk(std::size_t count, std::size_t length, const Body& 
 /// themselves.
 template <class... Turns>
 void parallel_all(const Turns&... turns) {
-  tbb::task_group_context context;
-  tbb::parallel_invoke(turns..., context);
-  check_is_whole(context);
+  struct Turn {
+    threads::Call call;
+    const void* body;
+  };
+  const Turn all[] = {{threads::call<Turns>, std::addressof(turns)}...};
+  parallel_for_each_index(sizeof...(turns), 1, [&](std::size_t i) { all[i].call(all[i].body); });
 }
 
 /// Gives each array its size, side by side: memory is cleared, and new to the process, by whoever touches it first.
@@ -90,7 +98,8 @@ void parallel_for_each_in_order(std::size_t count, std::size_t at_once, const Bo
   std::atomic<std::size_t> next = 0;
   parallel_for_each_index(std::min(count, at_once), 1, [&](std::size_t) {
     for (std::size_t i = next++; i < count; i = next++) {
-      tbb::this_task_arena::isolate([&] { body(i); });
+      const auto turn = [&body, i] { body(i); };
+      threads::run_isolated(threads::call<decltype(turn)>, std::addressof(turn));
     }
   });
 }
