@@ -2,6 +2,7 @@
 #include "builder/cluster/caps.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "base/local_ids.h"
 #include "builder/cluster/dense_limit.h"

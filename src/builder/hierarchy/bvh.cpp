@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <utility>
 
 #include "builder/hierarchy/lod_bounds.h"
 #include "builder/hierarchy/margins.h"

@@ -3,6 +3,8 @@
 #include "builder/pack/prefix_lengths.h"
 
 #include <algorithm>
+#include <iterator>
+#include <utility>
 
 #include "format/prefix_code.h"
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <iterator>
 
 #include "base/try.h"
 #include "draw/gpu/gpu_camera.h"

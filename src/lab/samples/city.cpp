@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "lab/samples/city.h"
 
+#include <utility>
+
 #include "base/random.h"
 #include "lab/samples/facets.h"
 #include "lab/samples/noise.h"

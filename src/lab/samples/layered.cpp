@@ -4,6 +4,7 @@
 // its own, and a colour that tells it from the others.
 #include <cassert>
 #include <functional>
+#include <utility>
 
 #include "base/random.h"
 #include "lab/samples/cube_grid.h"

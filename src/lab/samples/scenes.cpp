@@ -3,6 +3,7 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <utility>
 
 #include "lab/samples/city.h"
 #include "lab/samples/samples.h"

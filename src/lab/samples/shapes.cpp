@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <tuple>
+#include <utility>
 
 #include "lab/samples/cube_grid.h"
 #include "lab/samples/noise.h"
