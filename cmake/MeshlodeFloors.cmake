@@ -2,21 +2,24 @@
 # One floor = one folder under src/ = the library meshlode_<floor>; its rooms are the folders inside. cmake/layers.txt says
 # which floor may include which, and a test holds it.
 
-# Under sanitizers the floors share a precompiled header: reading the standard library is a third of what compiling
-# them costs there. Release builds do without, so that every file is also seen to include what it needs. GLM comes by the
-# house's own header, which sets its options first: with others its types would be passed in another way. QUICKLY: not
-# optimised, which takes off more than half of the rest, for code whose running time under sanitizers does not matter.
+# The floors share a precompiled header: reading the standard library is a third of what compiling them costs. Of other
+# headers every file of a release build is still seen to include what it needs, and of the standard ones a test reads it
+# (tests/house/standard_headers_test.cpp). Compiler caches do not see through precompiled headers: with one each file
+# reads for itself, as it does for clang-tidy. Under sanitizers GLM is among them, by the house's own header, which sets
+# its options first: with others its types would be passed in another way.
+# QUICKLY: not optimised under sanitizers, which takes off more than half of the rest, for code whose running time does
+# not matter there.
 function(meshlode_share_floor_headers name)
   cmake_parse_arguments(arg "QUICKLY" "" "" ${ARGN})
-  if(NOT MESHLODE_SANITIZE)
-    return()
-  endif()
   set(headers meshlode_floor_headers)
-  if(arg_QUICKLY AND NOT MESHLODE_FUZZ)
+  set(optimised)
+  if(MESHLODE_SANITIZE AND NOT MESHLODE_FUZZ AND arg_QUICKLY)
+    set(optimised -O0)
     set(headers meshlode_quick_floor_headers)
-    target_compile_options(${name} PRIVATE -O0)
+    target_compile_options(${name} PRIVATE ${optimised})
   endif()
-  if(CMAKE_CXX_COMPILER_LAUNCHER OR NOT CMAKE_CXX_COMPILER_ID MATCHES Clang)
+  if(CMAKE_CXX_COMPILER_LAUNCHER OR MESHLODE_RUNTIME_ONLY
+     OR NOT (CMAKE_CXX_COMPILER_ID STREQUAL "GNU" OR (MESHLODE_SANITIZE AND CMAKE_CXX_COMPILER_ID MATCHES Clang)))
     return()
   endif()
   # Programs are position-independent in another way than libraries are, and the compiler minds.
@@ -34,12 +37,13 @@ function(meshlode_share_floor_headers name)
     endif()
     target_link_libraries(${headers} PRIVATE meshlode_flags)
     target_include_directories(${headers} PRIVATE ${PROJECT_SOURCE_DIR}/src ${PROJECT_SOURCE_DIR}/include)
-    if(arg_QUICKLY AND NOT MESHLODE_FUZZ)
-      target_compile_options(${headers} PRIVATE -O0)
-    endif()
+    target_compile_options(${headers} PRIVATE ${optimised})
     target_precompile_headers(${headers} PRIVATE <algorithm> <array> <cmath> <cstdint> <cstring> <filesystem>
                               <functional> <map> <optional> <set> <span> <string> <string_view> <utility> <variant>
-                              <vector> ${PROJECT_SOURCE_DIR}/src/base/vec.h)
+                              <vector>)
+    if(MESHLODE_SANITIZE)
+      target_precompile_headers(${headers} PRIVATE ${PROJECT_SOURCE_DIR}/src/base/vec.h)
+    endif()
   endif()
   target_precompile_headers(${name} REUSE_FROM ${headers})
 endfunction()
