@@ -16,6 +16,7 @@
 #include <gtest/gtest.h>
 
 #include "base/ids.h"
+#include "base/random.h"
 #include "builder/dag/build_dag.h"
 #include "builder/encode/attribute_steps.h"
 #include "builder/measure/measure.h"
@@ -163,14 +164,16 @@ class ChartedSurface {
   std::map<std::uint32_t, PlainTree> charts_;
 };
 
-/// The middles of parts * parts equal triangles.
+/// A random point of each of parts * parts equal triangles. (Their middles never come near a corner, where what moved
+/// is off the farthest: a quantile of many is low.)
 template <class Visit>
-void for_each_point(int parts, const Visit& visit) {
-  for (int i = 0; i < parts; ++i) {
-    for (int j = 0; i + j < parts; ++j) {
-      visit(Vec3d(3.0 * parts - 3 * i - 3 * j - 2, 3.0 * i + 1, 3.0 * j + 1) / (3.0 * parts));
-      if (i + j + 1 < parts) visit(Vec3d(3.0 * parts - 3 * i - 3 * j - 4, 3.0 * i + 2, 3.0 * j + 2) / (3.0 * parts));
-    }
+void for_each_point(int parts, SplitMix64& random, const Visit& visit) {
+  for (int n = 0; n < parts * parts; ++n) {  // rows of i + j cells that point up, and i + j that point down
+    const int row = static_cast<int>(std::sqrt(n)), at = n - row * row, i = at / 2, j = row - i;
+    double s = random.unit(), t = random.unit();
+    if (s + t > 1.0) s = 1.0 - s, t = 1.0 - t;
+    if (at % 2 != 0) s = 1.0 - s, t = -t;
+    visit(Vec3d(parts - i - j - s - t, i + s, j + t) / double(parts));
   }
 }
 
@@ -308,6 +311,7 @@ std::vector<CountedUvs> count_uvs(const ChartedDag& charted) {
     }
   }
   const ChartedSurface source_surface(source);
+  SplitMix64 random(0x7576ULL);
 
   // What each cluster of level 0 has of the source, by places; then what each group makes takes over.
   std::vector<std::vector<Carried>> carried(dag.clusters.size());
@@ -329,7 +333,7 @@ std::vector<CountedUvs> count_uvs(const ChartedDag& charted) {
     if (places.empty()) continue;
     const std::uint32_t cluster = places.back();
     if (places.size() > 1) places.pop_back();
-    for_each_point(source_parts, [&](const Vec3d& w) {
+    for_each_point(source_parts, random, [&](const Vec3d& w) {
       carried[cluster].push_back({PaintedTriangle::mix(source[t].at, w), PaintedTriangle::mix(source[t].uv, w),
                                   source[t].chart, source[t].area() / (source_parts * source_parts)});
     });
@@ -361,7 +365,7 @@ std::vector<CountedUvs> count_uvs(const ChartedDag& charted) {
     std::vector<std::pair<double, double>> own, any, back;
     const int parts = source.size() > 50000 ? 2 : drawn.size() > 500 ? 3 : 6;
     for (const PaintedTriangle& t : drawn) {
-      for_each_point(parts, [&](const Vec3d& w) {
+      for_each_point(parts, random, [&](const Vec3d& w) {
         const Vec3d at = PaintedTriangle::mix(t.at, w);
         const Uv uv = PaintedTriangle::mix(t.uv, w);
         const auto off = [&](const PlainTree::Found& found) {
