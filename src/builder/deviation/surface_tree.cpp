@@ -12,6 +12,7 @@
 #include "base/parallel.h"
 #include "base/release.h"
 #include "builder/deviation/lanes.h"
+#include "builder/deviation/open_boxes.h"
 
 namespace meshlode::builder {
 
@@ -155,16 +156,8 @@ void SurfaceTree::build(const Surface& surface, Leaves leaves, Capsules capsules
   });
   // Whole levels, so that places follow from numbers: 4^depth leaves have room for all.
   const std::size_t leaf_count = (items.size() + kLeafSize - 1) / kLeafSize;
-  std::size_t depth = 1;
-  while ((std::size_t{1} << (2 * depth)) < leaf_count) ++depth;
-  std::size_t at = 0;
-  for (std::size_t level = 0; level < depth; ++level) {
-    level_start_.push_back(static_cast<std::uint32_t>(at));
-    const std::size_t span = std::size_t{1} << (2 * (depth - level));  // leaves below a node of this level
-    at += (leaf_count + span - 1) / span;
-  }
-  level_start_.push_back(static_cast<std::uint32_t>(at));
-  nodes_.resize(at);
+  level_start_ = box_levels(leaf_count);
+  nodes_.resize(level_start_.back());
   sort_items(items);
   slot_triangle_.resize(items.size());
   parallel_for_each_index(items.size(), kLoopGrain, [&](std::size_t i) { slot_triangle_[i] = items[i].triangle; });
@@ -350,18 +343,6 @@ inline SurfaceTree::Hit SurfaceTree::test_triangles(const Vec3f& point, std::uin
 
 namespace {
 
-/// What is still to be looked at, the nearest last. Eight bytes, so that one store puts it onto the stack.
-struct Entry {
-  std::uint32_t key;  ///< the bits of the squared distance, the lowest two replaced by the child's number
-  std::uint32_t
-      where;  ///< the parent within its level, and in the lowest four bits its level: 2^28 parents, 2^32 slots
-
-  [[nodiscard]] float distance2() const { return std::bit_cast<float>(key & ~3U); }
-  [[nodiscard]] std::uint32_t index() const { return 4 * (where >> 4U) + (key & 3U); }
-  [[nodiscard]] std::uint32_t level() const { return (where & 15U) + 1; }
-};
-using Stack = std::array<Entry, 3 * SurfaceTree::kMaxDepth + 8>;
-
 struct PointLanes {
   Lanes x, y, z;
 };
@@ -377,38 +358,12 @@ Lanes distances2_to_boxes(const Node& node, const PointLanes& p) {
   return dx * dx + dy * dy + dz * dz;
 }
 
-/// Puts the children that are nearer than `limit` onto the stack, the far ones first. Non-negative floats order like
-/// their bits: the child's number goes into the lowest two, and how many near ones are farther is a child's place.
-/// Which of them are near, and in what order, is a toss: no branch. Always inline: else the clone for AVX2 calls one
-/// that is not.
-[[gnu::always_inline]] inline void push_children(std::uint32_t parent, std::uint32_t level, Lanes distance2,
-                                                 float limit, Stack& stack, std::size_t& size) {
-  LaneMask bits;
-  std::memcpy(&bits, &distance2, sizeof(bits));
-  bits &= ~3;
-  Lanes lower;
-  std::memcpy(&lower, &bits, sizeof(lower));
-  const LaneMask is_near = lower < lanes(limit);
-  const LaneMask keys = ((bits | LaneMask{0, 1, 2, 3}) & is_near) | ~is_near;  // -1: less than any
-  const LaneMask places =
-      -((rotate_lanes<1>(keys) > keys) + (rotate_lanes<2>(keys) > keys) + (rotate_lanes<3>(keys) > keys));
-  std::array<std::uint32_t, 4> key, place;
-  std::memcpy(key.data(), &keys, sizeof(keys));
-  std::memcpy(place.data(), &places, sizeof(places));
-  const std::uint32_t where = parent << 4U | level;
-  for (std::size_t k = 0; k < 4; ++k) stack[size + place[k]] = {key[k], where};  // those that are not near behind all
-  size += count_lanes(is_near);
-}
-
 }  // namespace
 
 MESHLODE_CLONED_FOR_AVX2
 SurfaceTree::Hit SurfaceTree::find_nearest(const Vec3f& point, Hit best, float enough) const {
   if (nodes_.empty()) return best;
   const PointLanes p{lanes(point.x), lanes(point.y), lanes(point.z)};
-  const auto depth = static_cast<std::uint32_t>(level_start_.size() - 1);
-  Stack stack;
-  std::size_t size = 0;
   const auto distances2_to_children = [&](std::uint32_t node) {
     const Lanes distance2 = distances2_to_boxes(nodes_[node], p);
     if (capsules_.empty() || !any_lane(distance2 < lanes(best.distance2))) return distance2;
@@ -416,43 +371,12 @@ SurfaceTree::Hit SurfaceTree::find_nearest(const Vec3f& point, Hit best, float e
     const LaneMask is_near = distances2_to_capsules(capsules_[node], point) < lanes(best.distance2);
     return choose(is_near, distance2, lanes(std::numeric_limits<float>::infinity()));
   };
-  const auto open = [&](std::uint32_t level, std::uint32_t index) {
-    const Lanes distance2 = distances2_to_children(level_start_[level] + index);
-    push_children(index, level, distance2, best.distance2, stack, size);
+  const auto look_at = [&](std::uint32_t leaf) {
+    best = test_leaf(point, leaf, best);
+    return !(best.distance2 <= enough);
   };
-  /// Down whatever is on the stack; false where something is near enough.
-  const auto descend = [&] {
-    while (size > 0) {
-      const Entry entry = stack[--size];
-      if (!(entry.distance2() < best.distance2)) continue;
-      if (entry.level() < depth) {
-        open(entry.level(), entry.index());
-        continue;
-      }
-      best = test_leaf(point, entry.index(), best);
-      if (best.distance2 <= enough) return false;
-    }
-    return true;
-  };
-  if (!best.slot.is_valid()) {
-    open(0, 0);
-    descend();
-    return best;
-  }
-  // Upwards from the leaf that is known: of each node only the other three children may have something nearer, and
-  // mostly none of them has.
-  std::uint32_t index = best.slot.value / kLeafSize;
-  for (std::uint32_t level = depth; level-- > 0;) {
-    const std::uint32_t known = index & 3U;
-    index >>= 2U;
-    // By a mask: a lane that is written by its number goes through memory.
-    const LaneMask is_known = LaneMask{0, 1, 2, 3} == mask_lanes(static_cast<std::int32_t>(known));
-    const Lanes distance2 = choose(is_known, lanes(std::numeric_limits<float>::infinity()),
-                                   distances2_to_children(level_start_[level] + index));
-    if (!any_lane(distance2 < lanes(best.distance2))) continue;
-    push_children(index, level, distance2, best.distance2, stack, size);
-    if (!descend()) return best;
-  }
+  search_boxes(level_start_, best.slot.is_valid() ? best.slot.value / kLeafSize : kNoId, distances2_to_children,
+               look_at, [&] { return best.distance2; });
   return best;
 }
 

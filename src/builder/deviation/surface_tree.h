@@ -19,6 +19,7 @@
 #include "builder/deviation/capsules.h"
 #include "builder/deviation/four_triangles.h"
 #include "builder/deviation/lanes.h"
+#include "builder/deviation/open_boxes.h"
 #include "builder/deviation/point_distance.h"
 #include "builder/deviation/tree_slot.h"
 
@@ -97,8 +98,6 @@ class SurfaceTree {
   /// them. The distance to a triangle is convex, so that whatever lies between the points is no farther.
   [[nodiscard]] Hit look_around(const std::array<Vec3f, 3>& points, TreeSlot slot) const;
 
-  static constexpr std::size_t kMaxDepth = 16;  ///< 4^16 leaves
-
  private:
   struct Node {
     std::array<std::array<float, 4>, 3> low, high;  ///< [axis][child]
@@ -166,7 +165,7 @@ SurfaceTree::Hit SurfaceTree::find_nearest_of(const Vec3f& point, Hit best, cons
     std::uint32_t level, node;
     float distance2;
   };
-  std::array<Entry, 3 * kMaxDepth + 4> stack;
+  std::array<Entry, 3 * kMostBoxLevels + 4> stack;
   std::size_t size = 0;
   stack[size++] = {0, 0, 0.0F};
   const auto depth = static_cast<std::uint32_t>(level_start_.size() - 1);
@@ -210,7 +209,7 @@ void SurfaceTree::visit_along(const Vec3d& from, const Vec3d& to, const Visit& v
   struct Entry {
     std::uint32_t level, node;
   };
-  std::array<Entry, 3 * kMaxDepth + 1> stack;
+  std::array<Entry, 3 * kMostBoxLevels + 1> stack;
   std::size_t size = 0;
   stack[size++] = {0, 0};
   const auto depth = static_cast<std::uint32_t>(level_start_.size() - 1);

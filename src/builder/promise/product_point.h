@@ -18,11 +18,10 @@ using ProductPoint = std::array<double, D>;
 /// Squared distance of q from the triangle, of a point of it in any case: rounding never makes it too small by more
 /// than itself, and a triangle without area is its edges. Infinite may be what is farther than the square root of
 /// `enough2`.
-template <std::size_t D>
-double product_distance2(const ProductPoint<D>& q, const ProductPoint<D>& a, const ProductPoint<D>& b,
-                         const ProductPoint<D>& c, double enough2 = std::numeric_limits<double>::infinity()) {
+inline double product_distance2(const double* q, const double* a, const double* b, const double* c,
+                                std::size_t dimensions, double enough2) {
   double ee = 0.0, ef = 0.0, ff = 0.0, d1 = 0.0, d2 = 0.0, pp = 0.0;
-  for (std::size_t d = 0; d < D; ++d) {
+  for (std::size_t d = 0; d < dimensions; ++d) {
     const double e = b[d] - a[d], f = c[d] - a[d], p = q[d] - a[d];
     ee += e * e;
     ef += e * f;
@@ -39,7 +38,7 @@ double product_distance2(const ProductPoint<D>& q, const ProductPoint<D>& a, con
   }
   const auto at = [&](double v, double w) {
     double sum = 0.0;
-    for (std::size_t d = 0; d < D; ++d) {
+    for (std::size_t d = 0; d < dimensions; ++d) {
       const double off = (q[d] - a[d]) - (v * (b[d] - a[d]) + w * (c[d] - a[d]));
       sum += off * off;
     }
@@ -62,14 +61,37 @@ double product_distance2(const ProductPoint<D>& q, const ProductPoint<D>& a, con
   if (va <= 0.0 || vb <= 0.0 || vc <= 0.0 || !(sum > 1e-12 * ee * ff)) return on_edges();
   return at(vb / sum, vc / sum);
 }
+template <std::size_t D>
+double product_distance2(const ProductPoint<D>& q, const ProductPoint<D>& a, const ProductPoint<D>& b,
+                         const ProductPoint<D>& c, double enough2 = std::numeric_limits<double>::infinity()) {
+  return product_distance2(q.data(), a.data(), b.data(), c.data(), D, enough2);
+}
+
+/// A point and a triangle by their dot products: of the point (p) and two edges (e, f), all from the triangle's first
+/// corner.
+struct ProductDots {
+  double ee, ef, ff, pe, pf, pp;
+};
+
+/// Squared distance to some point of the triangle, the nearest but for rounding: of about 1e-15 of all lengths squared,
+/// which is much where the distance is small. A few operations, whatever the number of dimensions.
+inline double product_distance2_about(const ProductDots& dots) {
+  const auto& [ee, ef, ff, pe, pf, pp] = dots;
+  const auto at = [&](double v, double w) {
+    return pp - 2.0 * (v * pe + w * pf) + (v * v * ee + 2.0 * v * w * ef + w * w * ff);
+  };
+  const double b = pe * ff - pf * ef, c = pf * ee - pe * ef, det = ee * ff - ef * ef;
+  if (b >= 0.0 && c >= 0.0 && b + c <= det && det > 0.0) return at(b / det, c / det);
+  const auto share = [](double along, double whole) { return whole > 0.0 ? std::clamp(along / whole, 0.0, 1.0) : 0.0; };
+  const double w = share((pf - ef) - (pe - ee), (ee - ef) + (ff - ef));
+  return std::min({at(share(pe, ee), 0.0), at(0.0, share(pf, ff)), at(1.0 - w, w)});
+}
 
 /// Squared distance of q from the box between two corners.
-template <std::size_t D, class Real>
-double product_distance2_to_box(const ProductPoint<D>& q, const std::array<Real, D>& low,
-                                const std::array<Real, D>& high) {
+inline double product_distance2_to_box(const double* q, const double* low, const double* high, std::size_t dimensions) {
   double sum = 0.0;
-  for (std::size_t d = 0; d < D; ++d) {
-    const double off = std::max({double{low[d]} - q[d], q[d] - double{high[d]}, 0.0});
+  for (std::size_t d = 0; d < dimensions; ++d) {
+    const double off = std::max({low[d] - q[d], q[d] - high[d], 0.0});
     sum += off * off;
   }
   return sum;

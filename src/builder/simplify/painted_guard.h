@@ -56,18 +56,8 @@ class PaintedGuard {
     gather_old(view);
     gather_new(view);
     if (new_.empty()) return 0.0;  // the piece goes: a matter of positions
-    double largest = least;
-    for (const Facet& facet : old_) {
-      // Where triangles have no normals of their own, the corners around the ends are asked about by each of them.
-      for (std::size_t k = 0; k < facet.asked; ++k) reach(facet.corners[k], new_, facet.twin, largest);
-      reach(middle_of(facet.corners[0], facet.corners[1], facet.corners[2]), new_, facet.twin, largest);
-    }
-    for (const Facet& facet : new_) {
-      reach(middle_of(facet.corners[0], facet.corners[1], facet.corners[2]), old_, facet.twin, largest);
-      reach(middle_of(facet.corners[0], facet.corners[1]), old_, facet.twin, largest);
-      reach(middle_of(facet.corners[0], facet.corners[2]), old_, facet.twin, largest);
-    }
-    return std::min(largest, kFarthest2);
+    if (flat_unit_ > 0.0) return std::min(reached2<kDimensions>(least), kFarthest2);
+    return std::min(reached2<3 + Capacity>(least), kFarthest2);
   }
 
  private:
@@ -87,8 +77,10 @@ class PaintedGuard {
 
   /// A triangle, from a corner at the end of the edge on.
   struct Facet {
+    Facet() {}  // points are written, not cleared
     std::array<Point, 3> corners;
-    Point low, high;
+    Point low, high;  ///< of its box, where it has_box
+    bool has_box = false;
     std::size_t asked = 0;       ///< so many corners of the old surface are held against the new
     std::size_t twin = kNoTwin;  ///< the one of the other surface that has its edge across from the end
   };
@@ -104,25 +96,114 @@ class PaintedGuard {
     return out;
   }
 
+  /// A facet of the old surface and the one of the new that takes its place: the same but for the first corner. Bounds,
+  /// which are sharp but for rounding.
+  class TwinFacets {
+   public:
+    template <std::size_t D>
+    [[nodiscard]] static TwinFacets between(const Facet& was, const Facet& is) {
+      TwinFacets twins;
+      const auto& [a, b, c] = was.corners;
+      for (std::size_t d = 0; d < D; ++d) {
+        const double e = b[d] - a[d], f = c[d] - a[d], m = is.corners[0][d] - a[d];
+        twins.ee_ += e * e;
+        twins.ef_ += e * f;
+        twins.ff_ += f * f;
+        twins.em_ += e * m;
+        twins.fm_ += f * m;
+        twins.mm_ += m * m;
+      }
+      twins.grace_ = 1e-13 * (twins.ee_ + twins.ff_ + twins.mm_);
+      return twins;
+    }
+    /// Of all below but the first: no point moves farther than the half of what the corner does.
+    [[nodiscard]] double all2() const { return 0.25 * mm_ + grace_; }
+    /// Of the old first corner from the new facet.
+    [[nodiscard]] double old_corner2() const { return from_new2(mm_ - em_, mm_ - fm_, mm_); }
+    /// Of the old middle from the new facet.
+    [[nodiscard]] double old_middle2() const {
+      const double shared = mm_ - (em_ + fm_) / 3.0;
+      return from_new2((ee_ + ef_) / 3.0 - em_ + shared, (ef_ + ff_) / 3.0 - fm_ + shared,
+                       (ee_ + ff_ + 2.0 * ef_) / 9.0 + mm_ - 2.0 / 3.0 * (em_ + fm_));
+    }
+    /// Of the new middle from the old facet.
+    [[nodiscard]] double new_middle2() const {
+      return grace_ + product_distance2_about({ee_, ef_, ff_, (em_ + ee_ + ef_) / 3.0, (fm_ + ef_ + ff_) / 3.0,
+                                               (mm_ + ee_ + ff_ + 2.0 * (em_ + fm_ + ef_)) / 9.0});
+    }
+    /// Of the middle of a new edge, to corner 1 or 2.
+    [[nodiscard]] double new_edge2(std::size_t corner) const {
+      const double pe = corner == 1 ? em_ + ee_ : em_ + ef_, pf = corner == 1 ? fm_ + ef_ : fm_ + ff_;
+      const double pp = corner == 1 ? mm_ + ee_ + 2.0 * em_ : mm_ + ff_ + 2.0 * fm_;
+      return grace_ + product_distance2_about({ee_, ef_, ff_, 0.5 * pe, 0.5 * pf, 0.25 * pp});
+    }
+
+   private:
+    [[nodiscard]] double from_new2(double pe, double pf, double pp) const {
+      const double ee = ee_ - 2.0 * em_ + mm_, ef = ef_ - em_ - fm_ + mm_, ff = ff_ - 2.0 * fm_ + mm_;
+      return grace_ + product_distance2_about({ee, ef, ff, pe, pf, pp});
+    }
+    double ee_ = 0.0, ef_ = 0.0, ff_ = 0.0, em_ = 0.0, fm_ = 0.0, mm_ = 0.0, grace_ = 0.0;
+  };
+
+  /// distance2() of the facets. \pre all that is behind D dimensions is zero
+  template <std::size_t D>
+  [[nodiscard]] double reached2(double least) {
+    const bool is_certain = !(flat_unit_ > 0.0);  // that twins share two corners
+    twins_.clear();
+    for (const Facet& facet : new_) twins_.push_back(TwinFacets::template between<D>(old_[facet.twin], facet));
+    double largest = least;
+    // The corners first: mostly what lies between them is nearer.
+    for (const Facet& facet : old_) {
+      // Where triangles have no normals of their own, the corners around the ends are asked about by each of them.
+      const bool is_near = is_certain && facet.twin != kNoTwin && twins_[facet.twin].old_corner2() <= largest;
+      for (std::size_t k = 0; k < facet.asked && !is_near; ++k) reach<D>(facet.corners[k], new_, facet.twin, largest);
+      if (facet.twin == kNoTwin)
+        reach<D>(middle_of(facet.corners[0], facet.corners[1], facet.corners[2]), new_, kNoTwin, largest);
+    }
+    for (std::size_t i = 0; i < new_.size(); ++i) {
+      const Facet& facet = new_[i];
+      const auto& [a, b, c] = old_[facet.twin].corners;
+      const TwinFacets& twins = twins_[i];
+      if (is_certain && twins.all2() <= largest) continue;
+      if (!is_certain || twins.old_middle2() > largest) reach<D>(middle_of(a, b, c), new_, i, largest);
+      if (!is_certain || twins.new_middle2() > largest)
+        reach<D>(middle_of(facet.corners[0], facet.corners[1], facet.corners[2]), old_, facet.twin, largest);
+      for (const std::size_t k : {1, 2}) {
+        if (!is_certain || twins.new_edge2(k) > largest)
+          reach<D>(middle_of(facet.corners[0], facet.corners[k]), old_, facet.twin, largest);
+      }
+    }
+    return largest;
+  }
+
   /// The twin is looked at first: mostly nothing else needs to be.
-  static void reach(const Point& point, const std::vector<Facet>& surface, std::size_t twin, double& largest) {
+  template <std::size_t D>
+  static void reach(const Point& point, std::vector<Facet>& surface, std::size_t twin, double& largest) {
     const std::size_t first = twin != kNoTwin ? twin : 0;
-    double nearest = distance2_to(point, surface[first]);
+    double nearest = distance2_to<D>(point, surface[first]);
     if (nearest <= largest) return;
     for (std::size_t i = 0; i < surface.size(); ++i) {
-      if (i == first || !(product_distance2_to_box<kDimensions>(point, surface[i].low, surface[i].high) < nearest))
+      if (i == first) continue;
+      find_box(surface[i]);
+      if (!(product_distance2_to_box(point.data(), surface[i].low.data(), surface[i].high.data(), D) < nearest))
         continue;
-      nearest = std::min(nearest, distance2_to(point, surface[i]));
+      nearest = std::min(nearest, distance2_to<D>(point, surface[i], nearest));
       if (nearest <= largest) return;
     }
     if (nearest > largest) largest = nearest;
   }
 
-  static double distance2_to(const Point& point, const Facet& facet) {
+  template <std::size_t D>
+  static double distance2_to(const Point& point, const Facet& facet,
+                             double enough2 = std::numeric_limits<double>::infinity()) {
     const auto& [a, b, c] = facet.corners;
-    return product_distance2<kDimensions>(point, a, b, c);
+    return product_distance2(point.data(), a.data(), b.data(), c.data(), D, enough2);
   }
-  static void finish(Facet& facet) {
+  /// Few facets are ever asked for theirs.
+  static void find_box(Facet& facet) {
+    if (facet.has_box) return;
+    facet.has_box = true;
     const auto& [a, b, c] = facet.corners;
     for (std::size_t d = 0; d < kDimensions; ++d) {
       facet.low[d] = std::min(std::min(a[d], b[d]), c[d]);
@@ -148,6 +229,16 @@ class PaintedGuard {
     if (view.attributes.count() > 0) values_of(view, view.mesh.wedge(corner), place, values);
     return point_of(place, values);
   }
+  /// Of a corner that others may share.
+  [[nodiscard]] const Point& known_point(const View& view, std::uint32_t corner) {
+    const std::uint32_t wedge = view.attributes.count() > 0 ? view.mesh.wedge(corner) : 0;
+    const std::uint64_t key = std::uint64_t{view.mesh.vertex(corner)} << 32U | wedge;
+    for (std::size_t i = point_keys_.size(); i-- > 0;) {  // neighbours come one after the other
+      if (point_keys_[i] == key) return points_[i];
+    }
+    point_keys_.push_back(key);
+    return points_.emplace_back(point_of(view, corner));
+  }
   static void values_of(const View& view, std::uint32_t wedge, const Vec3d& place, Values& out) {
     view.attributes.values_of(wedge, view.locks.is_wedge_locked[wedge] != 0, place, out);
   }
@@ -160,24 +251,26 @@ class PaintedGuard {
     };
     const Vec3d n = glm::cross(place(1) - place(0), place(2) - place(0));
     const double length = std::sqrt(glm::dot(n, n));
-    if (!(length > 0.0)) return;
     for (Point& corner : facet.corners) {
       for (int axis = 0; axis < 3; ++axis)
-        corner[3 + Capacity + static_cast<std::size_t>(axis)] = flat_unit_ / length * n[axis];
+        corner[3 + Capacity + static_cast<std::size_t>(axis)] = length > 0.0 ? flat_unit_ / length * n[axis] : 0.0;
     }
   }
 
   void gather_old(const View& view) {
     old_.clear();
+    points_.clear();
+    point_keys_.clear();
     wedges_.clear();
     place_of_.clear();
     for (const Ring* end : {&view.star.a, &view.star.b}) {
       for (const std::uint32_t corner : end->corners()) {
         const std::uint32_t next = CollapseMesh::next_in_triangle(corner), last = CollapseMesh::next_in_triangle(next);
         Facet& facet = old_.emplace_back();
-        facet.corners = {point_of(view, corner), point_of(view, next), point_of(view, last)};
+        facet.corners[0] = known_point(view, corner);
+        facet.corners[1] = known_point(view, next);
+        facet.corners[2] = known_point(view, last);
         shade_flat(facet);
-        finish(facet);
         place_of_.push_back({corner, static_cast<std::uint32_t>(old_.size() - 1)});
         const std::uint32_t wedge = view.attributes.count() > 0 ? view.mesh.wedge(corner) : view.mesh.vertex(corner);
         const bool is_new = std::find(wedges_.begin(), wedges_.end(), wedge) == wedges_.end();
@@ -203,13 +296,11 @@ class PaintedGuard {
     new_.clear();
     for (const CollapseStar::OuterEdge& edge : view.star.outer()) {
       Facet& facet = new_.emplace_back();
-      const std::uint32_t next = CollapseMesh::next_in_triangle(edge.corner);
-      facet.corners = {joined_point(view, edge.corner), point_of(view, next),
-                       point_of(view, CollapseMesh::next_in_triangle(next))};
-      shade_flat(facet);
-      finish(facet);
+      facet.corners[0] = joined_point(view, edge.corner);
       const std::array<std::uint32_t, 2> key{edge.corner, 0};
       facet.twin = (*std::lower_bound(place_of_.begin(), place_of_.end(), key))[1];
+      for (std::size_t k = 1; k < 3; ++k) facet.corners[k] = old_[facet.twin].corners[k];
+      shade_flat(facet);
       old_[facet.twin].twin = new_.size() - 1;
     }
   }
@@ -224,6 +315,9 @@ class PaintedGuard {
   bool is_on_ = false, has_normals_ = false;
   // Of the collapse weighed last.
   std::vector<Facet> old_, new_;
+  std::vector<TwinFacets> twins_;                       ///< per new facet
+  std::vector<Point> points_;                           ///< of corners, by point_keys_
+  std::vector<std::uint64_t> point_keys_;               ///< vertex and wedge
   std::array<Point, WedgeClasses::kMost> joined_;       ///< what each class becomes
   std::vector<std::array<std::uint32_t, 2>> place_of_;  ///< corner at the end and number of its old facet, ascending
   std::vector<std::uint32_t> wedges_;

@@ -67,34 +67,59 @@ TEST(ProductTree, TheNearestPointOfATriangleIsThatOfALattice) {
   EXPECT_GT(dismissed, 10);
 }
 
+/// Of random triangles, one in four of them a needle, and points near and far.
+template <std::size_t D>
+void expect_all_looked_at(double stretch) {
+  SplitMix64 random(11);
+  const auto random_point = [&](double size) {
+    ProductPoint<D> p;
+    for (double& x : p) x = size * random.signed_unit();
+    return p;
+  };
+  ProductSurface<D> surface;
+  for (std::uint32_t t = 0; t < 500; ++t) {
+    const ProductPoint<D> center = random_point(1.0);
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      ProductPoint<D> p = random_point(t % 4 == 0 && k == 2 ? 1e-4 : 0.1);
+      for (std::size_t d = 0; d < D; ++d) p[d] += t % 4 == 0 && k == 2 ? surface.points.back()[d] : center[d];
+      if (k < 2 || t % 4 != 0) p[3] *= stretch;  // coordinates of a texture, in other units than positions
+      surface.points.push_back(p);
+    }
+    surface.triangles.push_back({3 * t, 3 * t + 1, 3 * t + 2});
+  }
+  const ProductTree<D> tree(surface);
+  for (int i = 0; i < 300; ++i) {
+    ProductPoint<D> q = random_point(i % 10 == 0 ? 1e25 : 1.5);
+    q[3] *= stretch;
+    double best = std::numeric_limits<double>::infinity();
+    for (const auto& [a, b, c] : surface.triangles) {
+      best = std::min(best, product_distance2<D>(q, surface.points[a], surface.points[b], surface.points[c]));
+    }
+    const std::uint32_t hint = i % 2 == 0 ? kNoId : static_cast<std::uint32_t>(random.below(500));
+    const double found = tree.find(q, hint, 0.0).distance2;
+    if (i % 10 == 0) {
+      EXPECT_NEAR(found / best, 1.0, 1e-12) << D << " " << i << ": as near as any";
+    } else {
+      EXPECT_EQ(found, best) << D << " " << i;
+    }
+    const auto near = tree.find(q, hint, 4.0 * best);
+    EXPECT_LE(near.distance2, 4.0 * best) << "near enough is near enough";
+  }
+}
+
 TEST(ProductTree, ItFindsWhatLookingAtAllFinds) {
   for (const double stretch : {1.0, 1e-3, 1e6}) {
-    SplitMix64 random(11);
-    ProductSurface<8> surface;
-    for (std::uint32_t t = 0; t < 500; ++t) {
-      const ProductPoint8 center = random_product_point(random, 1.0);
-      for (int k = 0; k < 3; ++k) {
-        ProductPoint8 p = random_product_point(random, 0.1);
-        for (std::size_t d = 0; d < 8; ++d) p[d] += center[d];
-        p[3] *= stretch;  // coordinates of a texture, in other units than positions
-        surface.points.push_back(p);
-      }
-      surface.triangles.push_back({3 * t, 3 * t + 1, 3 * t + 2});
-    }
-    const ProductTree<8> tree(surface);
-    for (int i = 0; i < 300; ++i) {
-      ProductPoint8 q = random_product_point(random, 1.5);
-      q[3] *= stretch;
-      double best = std::numeric_limits<double>::infinity();
-      for (const auto& [a, b, c] : surface.triangles) {
-        best = std::min(best, product_distance2<8>(q, surface.points[a], surface.points[b], surface.points[c]));
-      }
-      const std::uint32_t hint = i % 2 == 0 ? kNoId : static_cast<std::uint32_t>(random.below(500));
-      EXPECT_EQ(tree.find(q, hint, 0.0).distance2, best) << i;
-      const auto near = tree.find(q, hint, 4.0 * best);
-      EXPECT_LE(near.distance2, 4.0 * best) << "near enough is near enough";
-    }
+    expect_all_looked_at<5>(stretch);
+    expect_all_looked_at<8>(stretch);
+    expect_all_looked_at<14>(stretch);
   }
+}
+
+TEST(ProductTree, NothingIsNearWhatIsNoNumber) {
+  const ProductSurface<8> one{{ProductPoint8{}, ProductPoint8{1.0}, ProductPoint8{0.0, 1.0}}, {{0, 1, 2}}};
+  ProductPoint8 q{};
+  q[7] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(ProductTree<8>(one).find(q, 0, 0.0).triangle, kNoId);
 }
 
 TEST(ProductTree, OfSomeTrianglesTheOthersAreNotFound) {
