@@ -187,7 +187,11 @@ std::string comparison_text(const AssetComparison& comparison) {
   add_meshes(body, comparison);
   add_list(body, "\nmaterials", comparison.materials);
   add_list(body, "\nimages", comparison.images);
-  out += body.empty() ? "\nno number differs, nor a name, a setting, a material or an image\n" : body;
+  if (body.empty()) {
+    body = "\nno number differs, nor a name, a setting, a material or an image";
+    body += comparison.is_content_equal ? "\n" : ": what differs is not in these tables (vertices, groups, promises)\n";
+  }
+  out += body;
   return out + pictures_text(comparison.pictures);
 }
 

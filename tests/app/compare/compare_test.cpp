@@ -128,6 +128,10 @@ TEST(Compare, AnAssetIsEqualToItself) {
   EXPECT_EQ(json.at("meshes").size(), 1U);
   EXPECT_TRUE(json.at("picture").is_null());
   EXPECT_NE(comparison_text(comparison).find("no number differs"), std::string::npos);
+  EXPECT_EQ(comparison_text(comparison).find("not in these tables"), std::string::npos);
+  AssetComparison moved = comparison;  // one vertex, say
+  moved.is_content_equal = false;
+  EXPECT_NE(comparison_text(moved).find("not in these tables"), std::string::npos);
   const auto budget = read_budget(
       "file_bytes.ratio!=1, any(meshes).levels.change!=0, any(sections).bytes.ratio!=1, "
       "any(meshes).any(by_level).error_max.change!=0, content_equal==false",
