@@ -142,6 +142,23 @@ std::vector<AstrayPixel> find_astray(const IdPicture& source, const IdPicture& c
   return out;
 }
 
+void dismiss_narrow(const IdPicture& source, const IdPicture& cut, const IdPicture& finer_source,
+                    const IdPicture& finer_cut, std::uint32_t finer, const AllowedPixels& allowed_pixels,
+                    std::vector<AstrayPixel>& astray) {
+  const RunsOfIds source_runs(finer_source), cut_runs(finer_cut);
+  std::erase_if(astray, [&](const AstrayPixel& pixel) {
+    const double allowed = std::max(allowed_pixels.at(source, pixel.pixel), allowed_pixels.at(cut, pixel.pixel));
+    const auto is_shown = [&](std::uint64_t id, const RunsOfIds& runs) {
+      if (id == IdPicture::kBackground) return true;
+      // One of the pixels at the middle of the coarser one.
+      const std::uint32_t x = pixel.pixel % source.width * finer + finer / 2;
+      const std::uint32_t y = pixel.pixel / source.width * finer + finer / 2;
+      return runs.distance(id, x, y) <= allowed * finer;
+    };
+    return is_shown(source.id[pixel.pixel], cut_runs) && is_shown(cut.id[pixel.pixel], source_runs);
+  });
+}
+
 IdDistance sum_up(const IdPicture& source, const IdPicture& cut, std::span<const AstrayPixel> astray) {
   IdDistance out;
   for (std::size_t i = 0; i < source.id.size(); ++i) {

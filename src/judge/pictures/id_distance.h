@@ -38,6 +38,14 @@ struct AstrayPixel {
 [[nodiscard]] std::vector<AstrayPixel> find_astray(const IdPicture& source, const IdPicture& cut,
                                                    const AllowedPixels& allowed);
 
+/// Leaves out those whose surface the other scene shows within what is allowed in a picture of `finer` times as many
+/// pixels along each side. What is narrower than a pixel meets the middles of pixels by chance: a ribbon seen from its
+/// edge is dots in one picture and a line in the other. \pre `source` and `cut` are find_astray()'s, the finer ones of
+/// their scenes
+void dismiss_narrow(const IdPicture& source, const IdPicture& cut, const IdPicture& finer_source,
+                    const IdPicture& finer_cut, std::uint32_t finer, const AllowedPixels& allowed,
+                    std::vector<AstrayPixel>& astray);
+
 struct IdDistance {
   std::uint64_t pixels = 0;  ///< that show a surface in either picture
   std::uint64_t astray = 0;

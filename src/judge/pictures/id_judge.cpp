@@ -16,6 +16,11 @@ constexpr double kDepthRounding = 1e-6;
 /// So many surfaces are drawn by themselves for a camera.
 constexpr std::size_t kMostSurfaces = 64;
 
+/// From a slanted ribbon of a twentieth of a pixel, dots about five of the finer pixels apart: within what is allowed.
+constexpr std::uint32_t kFiner = 4;
+/// A side of the finer pictures: beyond it they would take gigabytes, and are not drawn.
+constexpr std::uint32_t kMostFinerPixels = 8192;
+
 double distance_of(const draw::Projection& p, std::uint32_t depth) {
   const double share = std::max(depth, 1U) / 4294967296.0;
   return p.is_orthographic ? p.far_distance - share * (p.far_distance - p.near_distance) : p.near_distance / share;
@@ -26,7 +31,8 @@ double distance_of(const draw::Projection& p, std::uint32_t depth) {
 Result<SourceIds> IdJudge::draw_source_ids(const run::Camera& camera) const {
   TRY_LET(projection, draw::make_projection(camera));
   projection->far_distance = draw::scene_depth(asset_, *projection);
-  return SourceIds{*projection, painter_.of_source(source_, draw_source(asset_, source_, *projection, masks_)), {}, {}};
+  return SourceIds{
+      *projection, painter_.of_source(source_, draw_source(asset_, source_, *projection, masks_)), {}, {}, {}};
 }
 
 const std::vector<std::uint32_t>& IdJudge::depths_of(SourceIds& truth, std::uint64_t id) const {
@@ -66,6 +72,23 @@ bool IdJudge::add_surfaces_in_one_place(std::span<const AstrayPixel> astray, Sou
   return has_any;
 }
 
+Status IdJudge::look_closer(SourceIds& truth, const run::Camera& camera, std::span<const run::ClusterInstance> cut,
+                            const IdPicture& ids, const AllowedPixels& allowed,
+                            std::vector<AstrayPixel>& astray) const {
+  if (std::max(camera.width, camera.height) > kMostFinerPixels / kFiner) return Ok{};
+  run::Camera closer = camera;
+  closer.width *= kFiner;
+  closer.height *= kFiner;
+  if (truth.finer.id.empty()) {
+    TRY_LET(source, draw_source_ids(closer));
+    truth.finer = std::move(source->ids);
+  }
+  TRY_LET(drawn, draw::draw_cut(asset_, cut, closer, masks_));
+  TRY_LET(finer, painter_.of_cut(cut, *drawn));
+  dismiss_narrow(truth.ids, ids, truth.finer, *finer, kFiner, allowed, astray);
+  return Ok{};
+}
+
 Result<IdDistance> IdJudge::judge_cut(SourceIds& truth, const run::Camera& camera,
                                       std::span<const run::ClusterInstance> cut, const draw::VisibilityBuffer& drawn,
                                       double pixel_error) const {
@@ -87,6 +110,9 @@ Result<IdDistance> IdJudge::judge_cut(SourceIds& truth, const run::Camera& camer
       std::erase_if(astray, is_behind_a_back);
       truth.ids.also.clear();
     }
+  }
+  if (is_beyond_limit(sum_up(truth.ids, *ids, astray))) {
+    TRY(look_closer(truth, camera, cut, *ids, AllowedPixels(truth.projection, pixel_error), astray));
   }
   return sum_up(truth.ids, *ids, astray);
 }

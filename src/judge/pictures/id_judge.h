@@ -24,6 +24,7 @@ namespace meshlode::judge {
 struct SourceIds {
   draw::Projection projection;
   IdPicture ids;
+  IdPicture finer;  ///< of the same camera with more pixels; empty until something narrow has to be seen
   /// What is drawn only where it is asked for: depths of both sides of all triangles, and of one surface by itself.
   std::vector<std::uint32_t> both_sides;
   std::map<std::uint64_t, std::vector<std::uint32_t>> of_surface;
@@ -51,6 +52,11 @@ class IdJudge {
   [[nodiscard]] bool add_surfaces_in_one_place(std::span<const AstrayPixel> astray, SourceIds& truth,
                                                IdPicture& cut) const;
   [[nodiscard]] bool has_both_in_one_place(SourceIds& truth, const IdPicture& cut, std::uint32_t pixel) const;
+
+  /// Errors: as judge_cut().
+  [[nodiscard]] Status look_closer(SourceIds& truth, const run::Camera& camera,
+                                   std::span<const run::ClusterInstance> cut, const IdPicture& ids,
+                                   const AllowedPixels& allowed, std::vector<AstrayPixel>& astray) const;
 
   const run::Asset& asset_;
   std::span<const SourceSurface> source_;

@@ -143,6 +143,51 @@ TEST(IdJudge, AnOpenSurfaceIsNotJudgedFromBehind) {
   EXPECT_GT(without, 0U);
 }
 
+/// Five turns of a ribbon of a twentieth of a pixel: dots in the picture of the source, and others in that of a cut.
+TEST(IdJudge, WhatIsNarrowerThanAPixelIsLookedAtCloser) {
+  constexpr std::uint32_t kSteps = 800;
+  scene::Primitive coil;
+  for (std::uint32_t i = 0; i <= kSteps; ++i) {
+    const double turn = 10.0 * 3.14159265358979323846 * i / kSteps;
+    for (const double radius : {1.0, 1.0005}) {
+      coil.positions.emplace_back(radius * std::cos(turn), 2.0 * i / kSteps, radius * std::sin(turn));
+    }
+    if (i > 0) {
+      const std::uint32_t v = 2 * i;
+      coil.indices.insert(coil.indices.end(), {v - 2, v - 1, v, v, v - 1, v + 1});
+    }
+  }
+  scene::Scene scene = lab::as_scene(lab::as_mesh(coil));
+  scene.materials.resize(1);
+  scene.materials[0].double_sided = true;
+  const auto asset = run::Asset::from_vector(built(scene));
+  ASSERT_TRUE(asset);
+  const std::vector<SourceSurface> surfaces = source_surfaces(scene, false);
+  const draw::AlphaMasks masks;
+  const IdJudge judge(*asset, surfaces, masks);
+  const IdPainter painter(*asset);
+  run::Camera camera;
+  camera.width = camera.height = 400;
+  camera.target = {0.0, 1.0, 0.0};
+  camera.near_distance = 1.0;
+  int beyond = 0;
+  for (const double height : {1.0, 1.1, 1.2}) {
+    camera.eye = {5.0, height, 0.0};
+    const std::vector<run::ClusterInstance> cut = run::select_flat(*asset, camera, 2.0);
+    const auto drawn = draw::draw_cut(*asset, cut, camera);
+    auto truth = judge.draw_source_ids(camera);
+    ASSERT_TRUE(drawn && truth);
+    const auto ids = painter.of_cut(cut, *drawn);
+    ASSERT_TRUE(ids);
+    const std::vector<AstrayPixel> astray = find_astray(truth->ids, *ids, AllowedPixels(truth->projection, 2.0));
+    beyond += is_beyond_limit(sum_up(truth->ids, *ids, astray));
+    const auto distance = judge.judge_cut(*truth, camera, cut, *drawn, 2.0);
+    ASSERT_TRUE(distance);
+    EXPECT_FALSE(is_beyond_limit(*distance)) << distance->astray << " of " << distance->pixels;
+  }
+  EXPECT_GT(beyond, 0) << "by single pixels";
+}
+
 /// A plate whose front lies in the floor of the recess: nothing says which of the two is seen. A tenth of a millimetre
 /// does.
 TEST(IdJudge, SurfacesInOnePlaceAreNotJudged) {
