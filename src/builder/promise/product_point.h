@@ -76,7 +76,7 @@ struct ProductDots {
 /// Squared distance to some point of the triangle, the nearest but for rounding: of about 1e-15 of all lengths squared,
 /// which is much where the distance is small. A few operations, whatever the number of dimensions.
 inline double product_distance2_about(const ProductDots& dots) {
-  const auto& [ee, ef, ff, pe, pf, pp] = dots;
+  const double ee = dots.ee, ef = dots.ef, ff = dots.ff, pe = dots.pe, pf = dots.pf, pp = dots.pp;
   const auto at = [&](double v, double w) {
     return pp - 2.0 * (v * pe + w * pf) + (v * v * ee + 2.0 * v * w * ef + w * w * ff);
   };
