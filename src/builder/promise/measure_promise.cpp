@@ -38,6 +38,7 @@ std::optional<ProductDeviations> measure(const PaintedSource& source, const Prod
   const std::size_t dimensions = space.dimensions();
   if (dimensions <= 3 && record.error_tier != format::ErrorTier::kQem) return std::nullopt;
   std::vector<double> least;
+  least.reserve(errors.size());
   for (const float error : errors) least.push_back(double{error} / margin);
   if (dimensions <= 5) return measure_in<5>(source, space, dag, record, std::move(least));
   if (dimensions <= 6) return measure_in<6>(source, space, dag, record, std::move(least));
