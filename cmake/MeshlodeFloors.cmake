@@ -3,23 +3,19 @@
 # which floor may include which, and a test holds it.
 
 # The floors share a precompiled header: reading the standard library is a third of what compiling them costs. Of other
-# headers every file of a release build is still seen to include what it needs, and of the standard ones a test reads it
-# (tests/house/standard_headers_test.cpp). Compiler caches do not see through precompiled headers: with one each file
-# reads for itself, as it does for clang-tidy. Under sanitizers GLM is among them, by the house's own header, which sets
+# headers every file of a release build is still seen to include what it needs. Whether it includes the standard ones is
+# checked by a test (tests/house/standard_headers_test.cpp). Compiler caches do not see through precompiled headers: with
+# one each file reads for itself, as it does for clang-tidy. Under sanitizers GLM is among them, by the house's own header, which sets
 # its options first: with others its types would be passed in another way.
 # QUICKLY: not optimised under sanitizers, which takes off more than half of the rest, for code whose running time does
-# not matter there. QUICKLY_ALWAYS: lightly optimised in a release build too, a third less, where it matters nowhere.
+# not matter there.
 function(meshlode_share_floor_headers name)
-  cmake_parse_arguments(arg "QUICKLY;QUICKLY_ALWAYS" "" "" ${ARGN})
+  cmake_parse_arguments(arg "QUICKLY" "" "" ${ARGN})
   set(headers meshlode_floor_headers)
   set(optimised)
-  if(MESHLODE_SANITIZE AND NOT MESHLODE_FUZZ AND (arg_QUICKLY OR arg_QUICKLY_ALWAYS))
-    set(optimised -O0)
-  elseif(arg_QUICKLY_ALWAYS AND CMAKE_BUILD_TYPE STREQUAL "Release")
-    set(optimised -O1)
-  endif()
-  if(optimised)
+  if(arg_QUICKLY AND MESHLODE_SANITIZE AND NOT MESHLODE_FUZZ)
     set(headers meshlode_quick_floor_headers)
+    set(optimised -O0)
     target_compile_options(${name} PRIVATE ${optimised})
   endif()
   if(CMAKE_CXX_COMPILER_LAUNCHER OR MESHLODE_RUNTIME_ONLY
@@ -52,26 +48,19 @@ function(meshlode_share_floor_headers name)
   target_precompile_headers(${name} REUSE_FROM ${headers})
 endfunction()
 
-# Of a caller's parsed arguments those that go on to meshlode_share_floor_headers().
-macro(meshlode_how_quickly variable)
-  set(${variable})
-  foreach(way IN ITEMS QUICKLY QUICKLY_ALWAYS)
-    if(arg_${way})
-      list(APPEND ${variable} ${way})
-    endif()
-  endforeach()
-endmacro()
-
 # What every target of a floor has: flags, src/ and include/ to include from, its libraries. LIBS are third-party and
 # private, because a library is seen through one wrapper file of a room only. A function is declared in a header or seen by
 # its own file alone, so that two files of one namespace cannot define the same one.
 function(meshlode_set_up_floor_target target)
-  cmake_parse_arguments(arg "QUICKLY;QUICKLY_ALWAYS" "" "" ${ARGN})
+  cmake_parse_arguments(arg "QUICKLY" "" "" ${ARGN})
   target_link_libraries(${target} PRIVATE meshlode_flags ${arg_UNPARSED_ARGUMENTS})
   target_compile_options(${target} PRIVATE $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-Wmissing-declarations>)
   target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src>
                                               $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>)
-  meshlode_how_quickly(how)
+  set(how)
+  if(arg_QUICKLY)
+    set(how QUICKLY)
+  endif()
   meshlode_share_floor_headers(${target} ${how})
 endfunction()
 
@@ -80,16 +69,18 @@ function(meshlode_compile_alone)
   set_source_files_properties(${ARGN} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 endfunction()
 
-# meshlode_add_floor(NAME SOURCES room/a.cpp ... [FLOORS base format ...] [LIBS Some::target ...] [QUICKLY | QUICKLY_ALWAYS]
-#                    [ALONE room/a.cpp ...])
-# FLOORS are public: their headers are included by this floor's headers. QUICKLY…: see meshlode_share_floor_headers().
+# meshlode_add_floor(NAME SOURCES room/a.cpp ... [FLOORS base format ...] [LIBS Some::target ...] [QUICKLY] [ALONE room/a.cpp ...])
+# FLOORS are public: their headers are included by this floor's headers. QUICKLY: see meshlode_share_floor_headers().
 # ALONE: sources that have a name of their own which others have too (MESHLODE_UNITY).
 function(meshlode_add_floor name)
-  cmake_parse_arguments(arg "QUICKLY;QUICKLY_ALWAYS" "" "SOURCES;FLOORS;LIBS;ALONE" ${ARGN})
+  cmake_parse_arguments(arg "QUICKLY" "" "SOURCES;FLOORS;LIBS;ALONE" ${ARGN})
   list(TRANSFORM arg_FLOORS PREPEND meshlode_)
   add_library(meshlode_${name} STATIC ${arg_SOURCES})
   meshlode_compile_alone(${arg_ALONE})
-  meshlode_how_quickly(how)
+  set(how)
+  if(arg_QUICKLY)
+    set(how QUICKLY)
+  endif()
   meshlode_set_up_floor_target(meshlode_${name} ${how} ${arg_LIBS})
   target_link_libraries(meshlode_${name} PUBLIC ${arg_FLOORS})
 endfunction()
