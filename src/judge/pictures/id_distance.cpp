@@ -35,8 +35,10 @@ class RunsOfIds {
     std::sort(rows_of_.begin(), rows_of_.end());
   }
 
-  /// From the middle of one pixel to the middle of another, pixels; infinite where there is none.
-  [[nodiscard]] double distance(std::uint64_t id, std::uint32_t x, std::uint32_t y) const {
+  /// From the middle of one pixel to the middle of another, pixels; infinite where there is none, or none within
+  /// `limit`.
+  [[nodiscard]] double distance(std::uint64_t id, std::uint32_t x, std::uint32_t y,
+                                double limit = std::numeric_limits<double>::infinity()) const {
     double best2 = std::numeric_limits<double>::infinity();
     const auto first = std::lower_bound(rows_of_.begin(), rows_of_.end(), RowOf(id, 0));
     const auto last = std::upper_bound(first, rows_of_.end(), RowOf(id, height_));
@@ -48,11 +50,12 @@ class RunsOfIds {
     };
     // Outwards from the row, beginning with the nearest that may have it.
     for (std::uint32_t dy = y < top ? top - y : y > bottom ? y - bottom : 0; dy < height_; ++dy) {
-      if (double{dy * 1.0} * dy >= best2) break;
+      if (double{dy * 1.0} * dy >= best2 || dy > limit) break;
       if (y + dy >= top && y + dy <= bottom) look(y + dy);
       if (y >= top + dy && y <= bottom + dy) look(y - dy);
     }
-    return std::sqrt(best2);
+    const double best = std::sqrt(best2);
+    return best <= limit ? best : std::numeric_limits<double>::infinity();
   }
 
  private:
@@ -98,6 +101,19 @@ double distance_beyond(const IdPicture& from, const RunsOfIds& to, std::uint32_t
   return distance > allowed ? distance : 0.0;
 }
 
+/// Whether a pixel's surface is at most two pixels wide there, across or down.
+bool is_narrow(const IdPicture& picture, std::size_t pixel) {
+  const std::uint64_t id = picture.id[pixel];
+  const auto is_short = [&](std::size_t at, std::size_t length, std::size_t stride) {
+    std::size_t run = 1;
+    for (std::size_t k = 1; k <= at && run < 3 && picture.id[pixel - k * stride] == id; ++k) ++run;
+    for (std::size_t k = 1; at + k < length && run < 3 && picture.id[pixel + k * stride] == id; ++k) ++run;
+    return run < 3;
+  };
+  return is_short(pixel % picture.width, picture.width, 1) ||
+         is_short(pixel / picture.width, picture.height, picture.width);
+}
+
 }  // namespace
 
 double AllowedPixels::at(const IdPicture& picture, std::size_t pixel) const {
@@ -132,9 +148,12 @@ std::vector<AstrayPixel> find_astray(const IdPicture& source, const IdPicture& c
       // To the nearest pixel that is not in the picture.
       const std::uint32_t to_edge = std::min({x + 1, source.width - x, y + 1, source.height - y});
       if (to_edge <= allowed) continue;
-      const double beyond =
-          std::max(distance_beyond(source, cut_runs, x, y, allowed), distance_beyond(cut, source_runs, x, y, allowed));
-      if (beyond > 0.0) rows[row].push_back({static_cast<std::uint32_t>(at), beyond});
+      const double of_source = distance_beyond(source, cut_runs, x, y, allowed);
+      const double of_cut = distance_beyond(cut, source_runs, x, y, allowed);
+      if (of_source > 0.0 || of_cut > 0.0) {
+        rows[row].push_back(
+            {static_cast<std::uint32_t>(at), std::max(of_source, of_cut), of_source > 0.0, of_cut > 0.0});
+      }
     }
   });
   std::vector<AstrayPixel> out;
@@ -146,17 +165,27 @@ void dismiss_narrow(const IdPicture& source, const IdPicture& cut, const IdPictu
                     const IdPicture& finer_cut, std::uint32_t finer, const AllowedPixels& allowed_pixels,
                     std::vector<AstrayPixel>& astray) {
   const RunsOfIds source_runs(finer_source), cut_runs(finer_cut);
-  std::erase_if(astray, [&](const AstrayPixel& pixel) {
+  const auto is_there = [&](const IdPicture& picture, const RunsOfIds& other, const AstrayPixel& pixel) {
+    if (!is_narrow(picture, pixel.pixel)) return false;
     const double allowed = std::max(allowed_pixels.at(source, pixel.pixel), allowed_pixels.at(cut, pixel.pixel));
-    const auto is_shown = [&](std::uint64_t id, const RunsOfIds& runs) {
-      if (id == IdPicture::kBackground) return true;
-      // One of the pixels at the middle of the coarser one.
-      const std::uint32_t x = pixel.pixel % source.width * finer + finer / 2;
-      const std::uint32_t y = pixel.pixel / source.width * finer + finer / 2;
-      return runs.distance(id, x, y) <= allowed * finer;
-    };
-    return is_shown(source.id[pixel.pixel], cut_runs) && is_shown(cut.id[pixel.pixel], source_runs);
+    // One of the finer pixels at the middle of this one.
+    const std::uint32_t x = pixel.pixel % picture.width * finer + finer / 2;
+    const std::uint32_t y = pixel.pixel / picture.width * finer + finer / 2;
+    return std::isfinite(other.distance(picture.id[pixel.pixel], x, y, allowed * finer));
+  };
+  std::vector<std::uint8_t> is_dismissed(astray.size());
+  parallel_for_each_index(astray.size(), 64, [&](std::size_t i) {
+    const AstrayPixel& pixel = astray[i];
+    is_dismissed[i] = (!pixel.is_of_source || is_there(source, cut_runs, pixel)) &&
+                              (!pixel.is_of_cut || is_there(cut, source_runs, pixel))
+                          ? 1
+                          : 0;
   });
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < astray.size(); ++i) {
+    if (is_dismissed[i] == 0) astray[kept++] = astray[i];
+  }
+  astray.resize(kept);
 }
 
 IdDistance sum_up(const IdPicture& source, const IdPicture& cut, std::span<const AstrayPixel> astray) {

@@ -29,7 +29,8 @@ class AllowedPixels {
 /// A pixel whose surface, in one picture, the other has not within what is allowed.
 struct AstrayPixel {
   std::uint32_t pixel = 0;
-  double distance_px = 0.0;  ///< to that surface; infinite where the other picture has it nowhere
+  double distance_px = 0.0;                      ///< to that surface; infinite where the other picture has it nowhere
+  bool is_of_source = false, is_of_cut = false;  ///< which of the two surfaces it is; both may be
 };
 
 /// The background is no surface: what vanishes before it, or comes, has an id of its own to be found by. Not judged are
@@ -38,10 +39,10 @@ struct AstrayPixel {
 [[nodiscard]] std::vector<AstrayPixel> find_astray(const IdPicture& source, const IdPicture& cut,
                                                    const AllowedPixels& allowed);
 
-/// Leaves out those whose surface the other scene shows within what is allowed in a picture of `finer` times as many
-/// pixels along each side. What is narrower than a pixel meets the middles of pixels by chance: a ribbon seen from its
-/// edge is dots in one picture and a line in the other. \pre `source` and `cut` are find_astray()'s, the finer ones of
-/// their scenes
+/// Leaves out those whose surface is at most two pixels wide there, if the other scene shows it within what is allowed
+/// in a picture of `finer` times as many pixels along each side. What is narrower than a pixel meets the middles of
+/// pixels by chance: a ribbon seen from its edge is dots in one picture and a line in the other. A wide surface stays
+/// astray. \pre `astray` is find_astray() of `source` and `cut`, and the finer ones are of the same scenes and camera
 void dismiss_narrow(const IdPicture& source, const IdPicture& cut, const IdPicture& finer_source,
                     const IdPicture& finer_cut, std::uint32_t finer, const AllowedPixels& allowed,
                     std::vector<AstrayPixel>& astray);

@@ -16,10 +16,12 @@ constexpr double kDepthRounding = 1e-6;
 /// So many surfaces are drawn by themselves for a camera.
 constexpr std::size_t kMostSurfaces = 64;
 
-/// From a slanted ribbon of a twentieth of a pixel, dots about five of the finer pixels apart: within what is allowed.
+/// Pixels of a finer picture along a side of one: with 4 a slanted ribbon of a twentieth of a pixel leaves dots about
+/// five finer pixels apart, which is within what is allowed.
 constexpr std::uint32_t kFiner = 4;
-/// A side of the finer pictures: beyond it they would take gigabytes, and are not drawn.
-constexpr std::uint32_t kMostFinerPixels = 8192;
+/// Of a finer picture: those of 640 × 640, the largest that verify draws, have as many, and take 350 MB. Larger ones
+/// are judged as they are.
+constexpr std::uint64_t kMostFinerPixels = std::uint64_t{2560} * 2560;
 
 double distance_of(const draw::Projection& p, std::uint32_t depth) {
   const double share = std::max(depth, 1U) / 4294967296.0;
@@ -75,7 +77,7 @@ bool IdJudge::add_surfaces_in_one_place(std::span<const AstrayPixel> astray, Sou
 Status IdJudge::look_closer(SourceIds& truth, const run::Camera& camera, std::span<const run::ClusterInstance> cut,
                             const IdPicture& ids, const AllowedPixels& allowed,
                             std::vector<AstrayPixel>& astray) const {
-  if (std::max(camera.width, camera.height) > kMostFinerPixels / kFiner) return Ok{};
+  if (std::uint64_t{camera.width} * camera.height > kMostFinerPixels / (kFiner * kFiner)) return Ok{};
   run::Camera closer = camera;
   closer.width *= kFiner;
   closer.height *= kFiner;

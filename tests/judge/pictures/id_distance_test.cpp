@@ -105,6 +105,53 @@ TEST(IdDistance, BeyondThePicturesEdgeNothingIsKnown) {
   EXPECT_EQ(measure(source, cut).astray, 2U * 36U) << "two columns are three pixels from what lies beyond";
 }
 
+/// A line in one picture, of which the other shows nothing by single pixels, and a thread in its finer picture: within
+/// what is allowed the line is no longer astray. A wall is, whatever threads there are.
+TEST(IdDistance, WhatIsNarrowIsLookedForInFinerPictures) {
+  constexpr std::uint32_t kFiner = 4, kLine = 30, kTop = 5, kBottom = 55;
+  const draw::Projection projection = flat(60, 60);
+  const AllowedPixels allowed(projection, 1.0);  // 2.5 pixels: 10 finer ones
+  const auto left = [&](std::uint32_t width, std::uint32_t fine_pixels_away, bool is_of_cut) {
+    const IdPicture nothing = blank(60, 60);
+    IdPicture line = blank(60, 60), thread = blank(60 * kFiner, 60 * kFiner);
+    fill(line, kLine, kTop, kLine + width, kBottom, 1);
+    const std::uint32_t at = kLine * kFiner + kFiner / 2 + fine_pixels_away;
+    fill(thread, at, 0, at + 1, 60 * kFiner, 1);
+    const IdPicture& source = is_of_cut ? nothing : line;
+    const IdPicture& cut = is_of_cut ? line : nothing;
+    std::vector<AstrayPixel> astray = find_astray(source, cut, allowed);
+    EXPECT_EQ(astray.size(), std::size_t{width} * (kBottom - kTop));
+    for (const AstrayPixel& pixel : astray)
+      EXPECT_TRUE(pixel.is_of_cut == is_of_cut && pixel.is_of_source != is_of_cut);
+    const IdPicture none = blank(60 * kFiner, 60 * kFiner);
+    dismiss_narrow(source, cut, is_of_cut ? thread : none, is_of_cut ? none : thread, kFiner, allowed, astray);
+    return astray.size();
+  };
+  for (const bool is_of_cut : {false, true}) {
+    EXPECT_EQ(left(1, 0, is_of_cut), 0U);
+    EXPECT_EQ(left(2, 0, is_of_cut), 0U);
+    EXPECT_EQ(left(1, 10, is_of_cut), 0U) << "just what is allowed";
+    EXPECT_EQ(left(1, 11, is_of_cut), 50U);
+    EXPECT_EQ(left(3, 0, is_of_cut), 150U) << "a wall";
+  }
+}
+
+/// Pixels of both: each has to be found.
+TEST(IdDistance, EachOfTwoNarrowSurfacesHasToBeThere) {
+  const draw::Projection projection = flat(60, 60);
+  const AllowedPixels allowed(projection, 1.0);
+  IdPicture source = blank(60, 60), cut = blank(60, 60), finer_source = blank(240, 240), finer_cut = blank(240, 240);
+  fill(source, 30, 5, 31, 55, 1);
+  fill(cut, 30, 5, 31, 55, 2);
+  fill(finer_source, 122, 0, 123, 240, 2);
+  std::vector<AstrayPixel> astray = find_astray(source, cut, allowed);
+  dismiss_narrow(source, cut, finer_source, finer_cut, 4, allowed, astray);
+  EXPECT_EQ(astray.size(), 50U);
+  fill(finer_cut, 122, 0, 123, 120, 1);
+  dismiss_narrow(source, cut, finer_source, finer_cut, 4, allowed, astray);
+  EXPECT_EQ(astray.size(), 23U) << "the upper part is there, and 2.5 pixels more";
+}
+
 /// By the definition, with all pixels against all.
 TEST(IdDistance, RandomPicturesHaveTheDistancesOfTheDefinition) {
   SplitMix64 random(4);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Which surface pixels show: a plate that is nearer to what lies behind it than the pixels that are allowed is missed
 // where it vanishes, however little anything moved.
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "builder/builder.h"
@@ -25,21 +27,45 @@ run::Camera front() {
   return meshlode::test::parallel_camera({50.0, 30.0, 0.0}, 100.0, 80.0, 600, 400);
 }
 
+/// An asset of one scene against a source.
+class AgainstSource {
+ public:
+  AgainstSource(const scene::Scene& drawn, const scene::Scene& source)
+      : asset_(run::Asset::from_vector(built(drawn))),
+        surfaces_(source_surfaces(source, false)),
+        masks_(draw::load_alpha_masks(*asset_)) {}
+  [[nodiscard]] const run::Asset& asset() const { return *asset_; }
+
+  struct Found {
+    IdDistance by_pixels;  ///< at first sight
+    IdDistance judged;
+  };
+  /// The cut of `drawn_error`, as one of `pixel_error` would be.
+  [[nodiscard]] Found judge(const run::Camera& camera, double drawn_error, double pixel_error) const {
+    const std::vector<run::ClusterInstance> cut = run::select_flat(*asset_, camera, drawn_error);
+    const auto drawn = draw::draw_cut(*asset_, cut, camera, masks_);
+    const IdJudge judge(*asset_, surfaces_, masks_);
+    auto truth = judge.draw_source_ids(camera);
+    EXPECT_TRUE(drawn && truth);
+    const auto ids = IdPainter(*asset_).of_cut(cut, *drawn);
+    EXPECT_TRUE(ids);
+    const auto astray = find_astray(truth->ids, *ids, AllowedPixels(truth->projection, pixel_error));
+    const IdDistance by_pixels = sum_up(truth->ids, *ids, astray);
+    const auto judged = judge.judge_cut(*truth, camera, cut, *drawn, pixel_error);
+    EXPECT_TRUE(judged);
+    return {by_pixels, *judged};
+  }
+
+ private:
+  Result<run::Asset> asset_;
+  std::vector<SourceSurface> surfaces_;
+  draw::AlphaMasks masks_;
+};
+
 /// Level 0 of an asset of `drawn` against `source`, as a cut of `pixel_error` would be.
 IdDistance judge_level0(const scene::Scene& drawn, const scene::Scene& source, const run::Camera& camera,
                         double pixel_error) {
-  auto asset = run::Asset::from_vector(built(drawn));
-  EXPECT_TRUE(asset);
-  const std::vector<SourceSurface> surfaces = source_surfaces(source, false);
-  const draw::AlphaMasks masks = draw::load_alpha_masks(*asset);
-  const std::vector<run::ClusterInstance> cut = run::select_flat(*asset, camera, 0.0);
-  const auto picture = draw::draw_cut(*asset, cut, camera, masks);
-  const IdJudge judge(*asset, surfaces, masks);
-  auto truth = judge.draw_source_ids(camera);
-  EXPECT_TRUE(picture && truth);
-  const auto distance = judge.judge_cut(*truth, camera, cut, *picture, pixel_error);
-  EXPECT_TRUE(distance);
-  return *distance;
+  return AgainstSource(drawn, source).judge(camera, 0.0, pixel_error).judged;
 }
 
 constexpr double kPixelsPerMm = 5.0;
@@ -114,30 +140,18 @@ TEST(IdJudge, ASourceIsMaskedAsItsCutIs) {
 /// What a surface shows from behind, where it is not drawn, hangs on how it faces: that is no fault of a cut.
 TEST(IdJudge, AnOpenSurfaceIsNotJudgedFromBehind) {
   const scene::Scene terrain = lab::as_scene(lab::as_mesh(lab::make_terrain(48, 48)));
-  const auto asset = run::Asset::from_vector(built(terrain));
-  ASSERT_TRUE(asset);
-  const std::vector<SourceSurface> surfaces = source_surfaces(terrain, false);
-  const draw::AlphaMasks masks;
-  const IdJudge judge(*asset, surfaces, masks);
-  const IdPainter painter(*asset);
-  const WorldBox box = world_box(*asset);
+  const AgainstSource same(terrain, terrain);
+  const WorldBox box = world_box(same.asset());
   run::Camera camera;
   camera.target = 0.5 * (box.low + box.high);
   camera.near_distance = 1e-3 * (box.high.x - box.low.x);
   std::uint64_t seen = 0, without = 0;
   for (const double below : {0.1, 0.2, 0.4}) {
     camera.eye = camera.target + Vec3d(1.3, -below, 0.3) * (box.high.x - box.low.x);
-    const std::vector<run::ClusterInstance> cut = run::select_flat(*asset, camera, 4.0);
-    const auto drawn = draw::draw_cut(*asset, cut, camera);
-    auto truth = judge.draw_source_ids(camera);
-    ASSERT_TRUE(drawn && truth);
-    const auto ids = painter.of_cut(cut, *drawn);
-    ASSERT_TRUE(ids);
-    without += find_astray(truth->ids, *ids, AllowedPixels(truth->projection, 4.0)).size();
-    const auto distance = judge.judge_cut(*truth, camera, cut, *drawn, 4.0);
-    ASSERT_TRUE(distance);
-    seen += distance->pixels;
-    EXPECT_EQ(distance->astray, 0U);
+    const AgainstSource::Found found = same.judge(camera, 4.0, 4.0);
+    without += found.by_pixels.astray;
+    seen += found.judged.pixels;
+    EXPECT_EQ(found.judged.astray, 0U);
   }
   EXPECT_GT(seen, 0U) << "slopes that face the camera";
   EXPECT_GT(without, 0U);
@@ -160,12 +174,7 @@ TEST(IdJudge, WhatIsNarrowerThanAPixelIsLookedAtCloser) {
   scene::Scene scene = lab::as_scene(lab::as_mesh(coil));
   scene.materials.resize(1);
   scene.materials[0].double_sided = true;
-  const auto asset = run::Asset::from_vector(built(scene));
-  ASSERT_TRUE(asset);
-  const std::vector<SourceSurface> surfaces = source_surfaces(scene, false);
-  const draw::AlphaMasks masks;
-  const IdJudge judge(*asset, surfaces, masks);
-  const IdPainter painter(*asset);
+  const AgainstSource same(scene, scene);
   run::Camera camera;
   camera.width = camera.height = 400;
   camera.target = {0.0, 1.0, 0.0};
@@ -173,17 +182,9 @@ TEST(IdJudge, WhatIsNarrowerThanAPixelIsLookedAtCloser) {
   int beyond = 0;
   for (const double height : {1.0, 1.1, 1.2}) {
     camera.eye = {5.0, height, 0.0};
-    const std::vector<run::ClusterInstance> cut = run::select_flat(*asset, camera, 2.0);
-    const auto drawn = draw::draw_cut(*asset, cut, camera);
-    auto truth = judge.draw_source_ids(camera);
-    ASSERT_TRUE(drawn && truth);
-    const auto ids = painter.of_cut(cut, *drawn);
-    ASSERT_TRUE(ids);
-    const std::vector<AstrayPixel> astray = find_astray(truth->ids, *ids, AllowedPixels(truth->projection, 2.0));
-    beyond += is_beyond_limit(sum_up(truth->ids, *ids, astray));
-    const auto distance = judge.judge_cut(*truth, camera, cut, *drawn, 2.0);
-    ASSERT_TRUE(distance);
-    EXPECT_FALSE(is_beyond_limit(*distance)) << distance->astray << " of " << distance->pixels;
+    const AgainstSource::Found found = same.judge(camera, 2.0, 2.0);
+    beyond += is_beyond_limit(found.by_pixels);
+    EXPECT_FALSE(is_beyond_limit(found.judged)) << found.judged.astray << " of " << found.judged.pixels;
   }
   EXPECT_GT(beyond, 0) << "by single pixels";
 }
