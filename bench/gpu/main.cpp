@@ -136,6 +136,16 @@ Status write_pool(JsonWriter& json, const draw::Device& device, const run::Asset
   json.field("all_resident_ms", pool->all_ms);
   json.field("pool_ms", pool->pool_ms);
   json.field("times_all_resident", pool->pool_ms / pool->all_ms);
+  json.key("passes_ms");
+  json.begin_object();
+  for (const PassTimes& times : pool->passes) {
+    json.key(times.pass);
+    json.begin_object();
+    json.field("all_resident", times.all_ms);
+    json.field("pool", times.pool_ms);
+    json.end_object();
+  }
+  json.end_object();
   json.field("all_resident_clusters_of_all_frames", pool->all_clusters);
   json.field("pool_clusters_of_all_frames", pool->pool_clusters);
   json.field("loads", pool->loads);

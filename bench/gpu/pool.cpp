@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <utility>
 #include <vector>
 
 #include "base/try.h"
@@ -17,15 +19,35 @@ namespace {
 /// Pages of 128 KiB at most: 120 MiB a second at 60 frames, what a slow SSD gives.
 constexpr std::uint32_t kLoadsPerFrame = 16;
 
-double sum_of(const draw::FrameReport& frame) {
-  double sum = 0.0;
-  for (const draw::Commands::Time& time : frame.times) sum += time.milliseconds;
-  return sum;
-}
-
 double median_of(std::vector<double> values) {
+  if (values.empty()) return 0.0;
   std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
   return values[values.size() / 2];
+}
+
+/// Milliseconds of a renderer's frames: of each pass, and of all of them together.
+struct FrameTimes {
+  std::vector<std::string> names;  ///< of passes, in the order of a frame
+  std::map<std::string, std::vector<double>> passes;
+  std::vector<double> frames;
+
+  void add(const draw::FrameReport& frame) {
+    double sum = 0.0;
+    for (const draw::Commands::Time& time : frame.times) {
+      std::vector<double>& times = passes[time.name];
+      if (times.empty()) names.push_back(time.name);
+      times.push_back(time.milliseconds);
+      sum += time.milliseconds;
+    }
+    frames.push_back(sum);
+  }
+};
+
+std::vector<PassTimes> compare_passes(FrameTimes& all, FrameTimes& pool) {
+  std::vector<PassTimes> out;
+  for (const std::string& name : all.names)
+    out.push_back({name, median_of(all.passes[name]), median_of(pool.passes[name])});
+  return out;
 }
 
 /// Once around, and in the middle of the way a third as far away, so that other pages are wanted there.
@@ -76,19 +98,20 @@ Result<PoolReport> measure_pool(draw::Device device, const run::Asset& asset, co
   }
   const std::uint64_t loads_before = pool.loads();
   out.incomplete = 0;
-  std::vector<double> all_times, pool_times;
+  FrameTimes all_times, pool_times;
   for (std::uint32_t f = 0; f < options.frames; ++f) {
     const run::Camera camera = pool_camera(scene, 1.0 * f / options.frames, options);
     TRY_LET(whole, all->draw(camera, options.pixel_error, 0.0));
     TRY_LET(partial, draw_pooled(camera, kLoadsPerFrame));
-    all_times.push_back(sum_of(*whole));
-    pool_times.push_back(sum_of(*partial));
+    all_times.add(*whole);
+    pool_times.add(*partial);
     out.all_clusters += whole->items;
     out.pool_clusters += partial->items;
   }
   out.loads = pool.loads() - loads_before;
-  out.all_ms = median_of(all_times);
-  out.pool_ms = median_of(pool_times);
+  out.passes = compare_passes(all_times, pool_times);
+  out.all_ms = median_of(std::move(all_times.frames));
+  out.pool_ms = median_of(std::move(pool_times.frames));
   return out;
 }
 

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
+#include <vector>
 
 #include "draw/gpu/vulkan/vulkan.h"
 #include "run/read/asset.h"
@@ -16,9 +18,16 @@ struct PoolOptions {
   double pixel_error = 1.0;
 };
 
+/// Medians of a pass by the device's clock, milliseconds; 0 where a renderer does not have it.
+struct PassTimes {
+  std::string pass;
+  double all_ms = 0.0, pool_ms = 0.0;
+};
+
 struct PoolReport {
   std::uint32_t pages = 0, slots = 0;
   double all_ms = 0.0, pool_ms = 0.0;                 ///< medians of the frames' passes, by the device's clock
+  std::vector<PassTimes> passes;                      ///< in the order of a frame
   std::uint64_t all_clusters = 0, pool_clusters = 0;  ///< of all frames together
   std::uint64_t loads = 0;
   std::uint32_t incomplete = 0;  ///< frames that lacked a page

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The members of open groups that are drawn: the coarser group does not pass (it is open), the own one passes or there is
-// none (I5). They go to the list of items: to its front for the software rasterizer, to its back for the hardware's.
+// none (I5). From a pool an open group wants its page, and its members are drawn where it is ready. They go to the list of
+// items: to its front for the software rasterizer, to its back for the hardware's.
 // With a = 1 the entries are clusters that last frame's depth hid, tried again in pass 1.
 #version 460
 #define GROUP_SIZE 64
@@ -79,8 +80,12 @@ void main() {
   } else if (index < min(counters.stages[STAGE_GROUPS + pass].count, frame.group_capacity)) {
     entry = frame.open_groups.at[index];
     const uint begin = frame.groups.at[entry.y].first_cluster;
-    first = begin + thread_index() % kGroupLanes;
+    const uint lane = thread_index() % kGroupLanes;
+    first = begin + lane;
     end = begin + frame.groups.at[entry.y].cluster_count;
+    // Here and not where the BVH is walked: there each depth would wait for it (docs/log/gpu.md).
+    if (lane == 0u) want_page(frame.visible.at[entry.x].view, entry.y);
+    if (!is_ready(entry.y)) end = first;
   }
   for (uint id = first; subgroupBallotBitCount(subgroupBallot(id < end)) > 0u; id += kGroupLanes) {
     consider(entry.x, id, id < end);

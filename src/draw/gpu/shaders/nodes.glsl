@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What the two ways to walk the BVH share: the test of a node. One that passes the rule has nothing to draw below it (I8).
 
-#include "resident.glsl"
-
 const uint kDropped = 0u;
 const uint kOpen = 1u;
 const uint kRetried = 2u;  // last frame's depth hides it: pass 1 tries it again
@@ -13,10 +11,8 @@ uint test_node(uint slot, MetricView view, GpuNode node) {
   return answer == kVisibleNow ? kOpen : answer == kHiddenBefore ? kRetried : kDropped;
 }
 
-// An open leaf's group.
+// An open leaf's group, whether its page is there or not.
 void append_group(uint slot, uint group, bool wants) {
-  if (wants) want_page(frame.visible.at[slot].view, group);
-  wants = wants && is_ready(group);
   const uint at = append(STAGE_GROUPS + pass, wants, kGroupLanes, 64u);
   if (!wants) return;
   if (at < frame.group_capacity) frame.open_groups.at[at] = uvec2(slot, group);
