@@ -153,7 +153,7 @@ enum class AggregateChoice : std::uint8_t {
 /// How groups follow each other inside a level, and so which of them share a page.
 enum class PageOrder : std::uint8_t {
   kLevel,      ///< as the build made them: neighbours mostly lie together
-  kCovisible,  ///< those together that the same views need
+  kCovisible,  ///< those together that the same views need; pages end where views load least
 };
 
 /// How much time to spend on shorter triangle strips. More effort: smaller topology, same geometry.

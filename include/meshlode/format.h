@@ -328,7 +328,7 @@ struct PageRecord {
 };
 static_assert(sizeof(PageRecord) == 64);
 
-/// What says how much a page matters before its groups are read: with the rule of selection, the sphere and the largest
+/// How much a page matters, for readers that have no groups yet: with the rule of selection, the sphere and the largest
 /// error give no less than the projected error of any of its groups, up to rounding: 1e-5 of it.
 struct PageHintRecord {
   float center[3];            ///< of a sphere that contains the LOD spheres of the page's groups, so all it may draw

@@ -430,8 +430,8 @@ MESHLODE_API const meshlode_page_request* meshlode_page_requests(const meshlode_
 
 /** Of the last selection, per page, resident or not: what is lost without it. The largest projected error in pixels of
  * its groups that do not pass and are inside the frustum, and of what depends on them; 0: this view does not want it,
- * so evict it first. MESHLODE_INFINITE_ERROR: it holds a terminal group of a mesh that has an instance; keep it always.
- */
+ * so evict it first. MESHLODE_INFINITE_ERROR: it holds a terminal group of a mesh with an instance that is not
+ * singular; keep it always. */
 MESHLODE_API const float* meshlode_page_priorities(const meshlode_selector* selector, size_t* count);
 
 /** Chooses the cut of one mesh without a camera: each group whose error is at most `max_error` (object units; infinity
@@ -469,8 +469,8 @@ typedef struct meshlode_hint {
 } meshlode_hint;
 
 /** The hint of a page; zeros if there is no such page. Derived from the groups, with the errors of positions: a view
- * that promises more may want the page earlier. `meshlode build --page-hints` stores the same in the file, for readers
- * that do not read groups at once. */
+ * that selects by another promise may need the page earlier. `meshlode build --page-hints` stores the same in the file,
+ * for readers that do not read groups at once. */
 MESHLODE_API meshlode_hint meshlode_page_hint(const meshlode_asset* asset, uint32_t page);
 
 /** What to read before the first picture: the pages without which nothing is drawn, those that hold a terminal group of

@@ -166,7 +166,8 @@ class ResidentSelector {
   [[nodiscard]] std::span<const PageRequest> requests() const;
   /// Of the last call, per page, resident or not: what is lost without it. The largest projected error in pixels of its
   /// groups that do not pass and are inside the frustum, and of what depends on them; 0: this view does not want it, so
-  /// evict it first. format::kInfiniteError: it holds a terminal group of a mesh that has an instance; keep it always.
+  /// evict it first. format::kInfiniteError: it holds a terminal group of a mesh with an instance that is not singular;
+  /// keep it always.
   [[nodiscard]] std::span<const float> page_priorities() const;
 
  private:
@@ -272,11 +273,10 @@ class AssetFile {
   [[nodiscard]] Result<std::vector<std::uint32_t>> streaming_order(
       format::Promise promise = format::Promise::kPosition) const;
 
-  /// How much a page matters, from its groups, with the errors of positions (a view that promises more may want it
-  /// earlier). Put into the rule of selection,
-  /// sphere and largest error give at least the projected error of any group of the page, and of what depends on it,
-  /// up to rounding: 1e-5 of it.
-  /// \pre page < pages().size()
+  /// How much a page matters, from its groups and their errors of positions. With the rule of selection, the sphere and
+  /// the largest error give at least the projected error of each group of the page and of what depends on it, up to
+  /// 1e-5 of it for rounding. A view that selects by another promise may need the page earlier. \pre page <
+  /// pages().size()
   [[nodiscard]] format::PageHintRecord page_hint(std::uint32_t page) const;
 
   /// What to read before the first picture: where the pages lie without which nothing is drawn, those that hold a

@@ -17,8 +17,10 @@ namespace {
 /// Full names of the types that a text defines where other files could see or repeat them: in named namespaces, not
 /// inside of other types. The text has the form of .clang-format.
 std::vector<std::string> defined_types(const std::string& text) {
-  static const std::regex opens("^(?:inline )?namespace ?([A-Za-z0-9_:]*) \\{.*"),
-      defines("^(?:struct|class|enum class|enum) ([A-Za-z0-9_]+)(?: final)?(?: :.*)? \\{.*");
+  static const std::regex opens("^(?:inline )?namespace ?([A-Za-z0-9_:]*) \\{[^}]*"),
+      defines(
+          "^(?:struct|class|union|enum class|enum)(?: alignas\\([^)]*\\)| \\[\\[[^\\]]*\\]\\])* ([A-Za-z0-9_]+)"
+          "(?: final)?(?:(?: :.*)? \\{.*)?");
   std::vector<std::string> namespaces, types;
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);) {
@@ -52,10 +54,12 @@ TEST(Definitions, ATypeIsDefinedOnce) {
 }
 
 TEST(Definitions, TypesOfNamedNamespacesAreSeen) {
-  EXPECT_EQ(defined_types("namespace a::b {\n\nstruct One {\n  struct Inner {};\n};\nclass Two : public One {\n};\n"
-                          "namespace {\nstruct Own {\n};\n}  // namespace\nenum class Three : int { k };\n"
-                          "struct Named;\n}  // namespace a::b\n"),
-            (std::vector<std::string>{"a::b::One", "a::b::Two", "a::b::Three"}));
+  EXPECT_EQ(
+      defined_types("namespace a::b {\n\nstruct One {\n  struct Inner {};\n};\nclass Two : public One {\n};\n"
+                    "namespace {\nstruct Own {\n};\n}  // namespace\nenum class Three : int { k };\n"
+                    "namespace c { struct Other; }\nstruct Named;\nstruct alignas(16) [[nodiscard]] Four {\n};\n"
+                    "struct Five\n    : public One {\n};\nunion Six {\n};\n}  // namespace a::b\n"),
+      (std::vector<std::string>{"a::b::One", "a::b::Two", "a::b::Three", "a::b::Four", "a::b::Five", "a::b::Six"}));
 }
 
 }  // namespace

@@ -2,7 +2,7 @@
 // A third-party library is seen through one .cpp per room that uses it, never in a header: `grep -r "include <metis"`
 // hits one file. Excepted are GLM, whose types are our vectors, and three headers that a folder shares with nobody:
 // draw/gpu/vulkan/types.h, because the Vulkan wrapper is four files, scene/import/gltf/tinygltf.h, because import works
-// on tinygltf's model, and out/export/gltf_document.h, because what export writes is a JSON document.
+// on tinygltf's model, and app/export/gltf_document.h, because what export writes is a JSON document.
 // tools/meshlode/library_versions.cpp sees nearly all of them, for their versions alone.
 #include <array>
 #include <map>

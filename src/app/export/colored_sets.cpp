@@ -14,8 +14,6 @@
 namespace meshlode::app {
 namespace {
 
-constexpr int kArrayBuffer = 34962, kElementArrayBuffer = 34963;
-
 /// Two buffer views and two accessors: positions, then indices.
 struct WrittenPrimitive {
   GlbBinary::Range positions, indices;
@@ -115,18 +113,18 @@ void write_views_and_accessors(JsonWriter& w, const Document& document) {
     }
     w.end_array();
   };
-  const auto view = [&](const GlbBinary::Range& range, int target) {
+  const auto view = [&](const GlbBinary::Range& range, ViewTarget target) {
     w.begin_object();
     w.field("buffer", 0);
     w.field("byteOffset", range.offset);
     w.field("byteLength", range.bytes);
-    w.field("target", target);
+    w.field("target", static_cast<int>(target));
     w.end_object();
   };
   w.key("bufferViews");
   for_each([&](const WrittenPrimitive& p) {
-    view(p.positions, kArrayBuffer);
-    view(p.indices, kElementArrayBuffer);
+    view(p.positions, ViewTarget::kVertices);
+    view(p.indices, ViewTarget::kIndices);
   });
   std::size_t next = 0;
   w.key("accessors");

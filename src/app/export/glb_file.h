@@ -31,6 +31,9 @@ class GlbBinary {
   std::vector<std::uint8_t> bytes_;
 };
 
+/// What vertex data and indices are for a view.
+enum class ViewTarget : int { kNone = 0, kVertices = 34962, kIndices = 34963 };
+
 /// Header, JSON chunk (padded with spaces), BIN chunk (padded with zeros; absent where empty).
 /// Errors: kUnsupported beyond the 4 GiB that a GLB can hold.
 [[nodiscard]] Result<std::vector<std::uint8_t>> assemble_glb(std::string_view json,

@@ -28,9 +28,6 @@ GltfJson& array_of(GltfJson& object, const char* key);
 /// Names an extension in the document's lists, once.
 void use_extension(GltfJson& document, const char* name, bool is_required);
 
-/// What vertex data and indices are for a view.
-enum class ViewTarget : int { kNone = 0, kVertices = 34962, kIndices = 34963 };
-
 /// A view of the BIN chunk, or an accessor: its index.
 std::size_t add_view(GltfJson& document, GlbBinary::Range range, ViewTarget target = ViewTarget::kNone);
 std::size_t add_accessor(GltfJson& document, GltfJson accessor);

@@ -84,7 +84,8 @@ constexpr std::array<SettingInfo, kSettingCount> kSettings{{
      "largest page, in KiB; smaller ones load less that is not drawn, in more requests; a larger group has its own",
      "128", false},
     {Setting::kPageOrder, "page-order", "", "Output",
-     "order of groups inside a level: level, as they were built; covisible, those together that views need together",
+     "order of groups inside a level: level, as they were built; covisible, those together that views need together, "
+     "in pages that end where views load least",
      "level", false},
     {Setting::kRootBytes, "root-bytes", " auto|N", "Output",
      "limit of each mesh's first page in bytes, 16384 to 131072; auto: as --page-size", "auto", false},

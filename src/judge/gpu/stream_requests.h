@@ -16,12 +16,12 @@ namespace meshlode::judge {
 [[nodiscard]] std::string find_priority_fault(std::span<const float> device, std::span<const float> host,
                                               double pixel_error);
 
-/// A frame, culled by the view volume, against the same one that is not. "": nothing else is drawn or asked for by
-/// more.
 struct DrawnFrame {
   std::span<const run::ClusterInstance> cut;  ///< ascending
   std::span<const float> priorities;
 };
+/// A frame that is culled by the view volume against the same one that is not. "": nothing else is drawn or asked for
+/// by more. \pre both have priorities of as many pages
 [[nodiscard]] std::string find_culled_fault(const DrawnFrame& culled, const DrawnFrame& whole);
 
 /// "": each of `seen`, pages of which something would be seen if all were there, is asked for.
