@@ -17,9 +17,11 @@ using ProductPoint = std::array<double, D>;
 
 /// Squared distance of q from the triangle, of a point of it in any case: rounding never makes it too small by more
 /// than itself, and a triangle without area is its edges. Infinite may be what is farther than the square root of
-/// `enough2`.
-inline double product_distance2(const double* q, const double* a, const double* b, const double* c,
-                                std::size_t dimensions, double enough2) {
+/// `enough2`. D: `dimensions`, where they are known when this is compiled, or 0.
+template <std::size_t D = 0>
+double product_distance2(const double* q, const double* a, const double* b, const double* c, std::size_t dimensions,
+                         double enough2) {
+  if constexpr (D > 0) dimensions = D;
   double ee = 0.0, ef = 0.0, ff = 0.0, d1 = 0.0, d2 = 0.0, pp = 0.0;
   for (std::size_t d = 0; d < dimensions; ++d) {
     const double e = b[d] - a[d], f = c[d] - a[d], p = q[d] - a[d];
@@ -36,9 +38,9 @@ inline double product_distance2(const double* q, const double* a, const double* 
     const double in_plane2_by_det = d1 * (d1 * ff - d2 * ef) + d2 * (d2 * ee - d1 * ef);
     if ((pp * (1.0 - 1e-6) - enough2) * det > in_plane2_by_det) return std::numeric_limits<double>::infinity();
   }
-  const auto at = [&](double v, double w) {
+  const auto at = [=](double v, double w) __attribute__((always_inline)) {
     double sum = 0.0;
-    for (std::size_t d = 0; d < dimensions; ++d) {
+    for (std::size_t d = 0; d < (D > 0 ? D : dimensions); ++d) {
       const double off = (q[d] - a[d]) - (v * (b[d] - a[d]) + w * (c[d] - a[d]));
       sum += off * off;
     }
@@ -64,7 +66,7 @@ inline double product_distance2(const double* q, const double* a, const double* 
 template <std::size_t D>
 double product_distance2(const ProductPoint<D>& q, const ProductPoint<D>& a, const ProductPoint<D>& b,
                          const ProductPoint<D>& c, double enough2 = std::numeric_limits<double>::infinity()) {
-  return product_distance2(q.data(), a.data(), b.data(), c.data(), D, enough2);
+  return product_distance2<D>(q.data(), a.data(), b.data(), c.data(), D, enough2);
 }
 
 /// A point and a triangle by their dot products: of the point (p) and two edges (e, f), all from the triangle's first

@@ -214,8 +214,9 @@ template <std::size_t D>
   const std::size_t dimensions = D > 0 ? D : surface_.dimensions;
   Hit best;
   const auto take = [&](std::uint32_t triangle) __attribute__((always_inline)) {
-    const double distance2 = product_distance2(point, corner(triangle, 0, dimensions), corner(triangle, 1, dimensions),
-                                               corner(triangle, 2, dimensions), dimensions, best.distance2);
+    const double distance2 =
+        product_distance2<D>(point, corner(triangle, 0, dimensions), corner(triangle, 1, dimensions),
+                             corner(triangle, 2, dimensions), dimensions, best.distance2);
     if (distance2 < best.distance2) best = {distance2, triangle};
   };
   // What is near enough is mostly the hint.

@@ -36,15 +36,17 @@ class PaintedGuard {
     for (std::uint32_t j = 0; j < layout.color_offset(); ++j) {
       const std::uint32_t in_uv = j - layout.uv_offset();
       unit_[j] = per_object * (layout.has_normal && j < 3 ? units.normal : units.uv[in_uv / 2][in_uv % 2]);
-      is_on_ = is_on_ || unit_[j] > 0.0;
+      coordinate_[j] = static_cast<std::uint32_t>(dimensions_);
+      if (unit_[j] > 0.0) ++dimensions_;
     }
     has_normals_ = layout.has_normal && unit_[0] > 0.0;
     flat_unit_ = layout.flat_normal ? per_object * units.normal : 0.0;
-    is_on_ = is_on_ || flat_unit_ > 0.0;
+    first_flat_ = dimensions_;
+    if (flat_unit_ > 0.0) dimensions_ += 3;
   }
 
   /// Whether anything but positions counts.
-  [[nodiscard]] bool is_on() const { return is_on_; }
+  [[nodiscard]] bool is_on() const { return dimensions_ > 3; }
 
   /// The largest squared distance, or some number up to `least` where none is larger. \pre is_on(); `classes` are those
   /// of the star's collapse
@@ -56,15 +58,21 @@ class PaintedGuard {
     gather_old(view);
     gather_new(view);
     if (new_.empty()) return 0.0;  // the piece goes: a matter of positions
-    if (flat_unit_ > 0.0) return std::min(reached2<kDimensions>(least), kFarthest2);
-    return std::min(reached2<3 + Capacity>(least), kFarthest2);
+    // With a number that is known loops have no ends to look for; most meshes that promise texels have 5.
+    if constexpr (kMostDimensions > 5) {
+      if (dimensions_ <= 5) return std::min(reached2<5>(least), kFarthest2);
+    }
+    if constexpr (kMostDimensions > 8) {
+      if (dimensions_ <= 8) return std::min(reached2<8>(least), kFarthest2);
+    }
+    return std::min(reached2<kMostDimensions>(least), kFarthest2);
   }
 
  private:
-  static constexpr std::size_t kDimensions = 3 + Capacity + 3;  ///< the last: normals of triangles
+  static constexpr std::size_t kMostDimensions = 3 + Capacity + 3;  ///< the last: normals of triangles
   static constexpr double kFarthest2 = 1e30;
   static constexpr std::size_t kNoTwin = std::numeric_limits<std::size_t>::max();
-  using Point = ProductPoint<kDimensions>;
+  using Point = ProductPoint<kMostDimensions>;  ///< positions, then what counts; 0 behind dimensions_
   using Values = typename Attributes::Values;
   struct View {
     const CollapseMesh& mesh;
@@ -85,14 +93,17 @@ class PaintedGuard {
     std::size_t twin = kNoTwin;  ///< the one of the other surface that has its edge across from the end
   };
 
+  // Of D coordinates, which are all that is looked at.
+  template <std::size_t D>
   static Point middle_of(const Point& a, const Point& b, const Point& c) {
     Point out;
-    for (std::size_t d = 0; d < kDimensions; ++d) out[d] = (a[d] + b[d] + c[d]) / 3.0;
+    for (std::size_t d = 0; d < D; ++d) out[d] = (a[d] + b[d] + c[d]) / 3.0;
     return out;
   }
+  template <std::size_t D>
   static Point middle_of(const Point& a, const Point& b) {
     Point out;
-    for (std::size_t d = 0; d < kDimensions; ++d) out[d] = 0.5 * (a[d] + b[d]);
+    for (std::size_t d = 0; d < D; ++d) out[d] = 0.5 * (a[d] + b[d]);
     return out;
   }
 
@@ -159,19 +170,19 @@ class PaintedGuard {
       const bool is_near = is_certain && facet.twin != kNoTwin && twins_[facet.twin].old_corner2() <= largest;
       for (std::size_t k = 0; k < facet.asked && !is_near; ++k) reach<D>(facet.corners[k], new_, facet.twin, largest);
       if (facet.twin == kNoTwin)
-        reach<D>(middle_of(facet.corners[0], facet.corners[1], facet.corners[2]), new_, kNoTwin, largest);
+        reach<D>(middle_of<D>(facet.corners[0], facet.corners[1], facet.corners[2]), new_, kNoTwin, largest);
     }
     for (std::size_t i = 0; i < new_.size(); ++i) {
       const Facet& facet = new_[i];
       const auto& [a, b, c] = old_[facet.twin].corners;
       const TwinFacets& twins = twins_[i];
       if (is_certain && twins.all2() <= largest) continue;
-      if (!is_certain || twins.old_middle2() > largest) reach<D>(middle_of(a, b, c), new_, i, largest);
+      if (!is_certain || twins.old_middle2() > largest) reach<D>(middle_of<D>(a, b, c), new_, i, largest);
       if (!is_certain || twins.new_middle2() > largest)
-        reach<D>(middle_of(facet.corners[0], facet.corners[1], facet.corners[2]), old_, facet.twin, largest);
+        reach<D>(middle_of<D>(facet.corners[0], facet.corners[1], facet.corners[2]), old_, facet.twin, largest);
       for (const std::size_t k : {1, 2}) {
         if (!is_certain || twins.new_edge2(k) > largest)
-          reach<D>(middle_of(facet.corners[0], facet.corners[k]), old_, facet.twin, largest);
+          reach<D>(middle_of<D>(facet.corners[0], facet.corners[k]), old_, facet.twin, largest);
       }
     }
     return largest;
@@ -185,7 +196,7 @@ class PaintedGuard {
     if (nearest <= largest) return;
     for (std::size_t i = 0; i < surface.size(); ++i) {
       if (i == first) continue;
-      find_box(surface[i]);
+      find_box<D>(surface[i]);
       if (!(product_distance2_to_box(point.data(), surface[i].low.data(), surface[i].high.data(), D) < nearest))
         continue;
       nearest = std::min(nearest, distance2_to<D>(point, surface[i], nearest));
@@ -198,14 +209,15 @@ class PaintedGuard {
   static double distance2_to(const Point& point, const Facet& facet,
                              double enough2 = std::numeric_limits<double>::infinity()) {
     const auto& [a, b, c] = facet.corners;
-    return product_distance2(point.data(), a.data(), b.data(), c.data(), D, enough2);
+    return product_distance2<D>(point.data(), a.data(), b.data(), c.data(), D, enough2);
   }
   /// Few facets are ever asked for theirs.
+  template <std::size_t D>
   static void find_box(Facet& facet) {
     if (facet.has_box) return;
     facet.has_box = true;
     const auto& [a, b, c] = facet.corners;
-    for (std::size_t d = 0; d < kDimensions; ++d) {
+    for (std::size_t d = 0; d < D; ++d) {
       facet.low[d] = std::min(std::min(a[d], b[d]), c[d]);
       facet.high[d] = std::max(std::max(a[d], b[d]), c[d]);
     }
@@ -219,7 +231,7 @@ class PaintedGuard {
       for (std::size_t k = 0; k < 3 && has_normals_ && length > 0.0; ++k) values[k] /= length;
     }
     for (std::size_t j = 0; j < Capacity; ++j) {
-      if (unit_[j] > 0.0 && std::isfinite(values[j])) out[3 + j] = unit_[j] * values[j];
+      if (unit_[j] > 0.0 && std::isfinite(values[j])) out[coordinate_[j]] = unit_[j] * values[j];
     }
     return out;
   }
@@ -253,7 +265,7 @@ class PaintedGuard {
     const double length = std::sqrt(glm::dot(n, n));
     for (Point& corner : facet.corners) {
       for (int axis = 0; axis < 3; ++axis)
-        corner[3 + Capacity + static_cast<std::size_t>(axis)] = length > 0.0 ? flat_unit_ / length * n[axis] : 0.0;
+        corner[first_flat_ + static_cast<std::size_t>(axis)] = length > 0.0 ? flat_unit_ / length * n[axis] : 0.0;
     }
   }
 
@@ -311,8 +323,10 @@ class PaintedGuard {
   }
 
   std::array<double, Capacity == 0 ? 1 : Capacity> unit_{};
+  std::array<std::uint32_t, Capacity == 0 ? 1 : Capacity> coordinate_{};  ///< of a point, where unit_ is above 0
+  std::size_t dimensions_ = 3, first_flat_ = 3;  ///< normals of triangles, if there are, are the last
   double flat_unit_ = 0.0;
-  bool is_on_ = false, has_normals_ = false;
+  bool has_normals_ = false;
   // Of the collapse weighed last.
   std::vector<Facet> old_, new_;
   std::vector<TwinFacets> twins_;                       ///< per new facet
