@@ -137,6 +137,12 @@ TEST(Octahedral, AxesAreExactAndNegativeZeroIsZero) {
   }
 }
 
+TEST(Octahedral, NormalsOfPointsHaveLengthOne) {
+  for (const Point& p : {Point{0, 0, 811}, Point{300, -500, 11}, Point{-1, 2, -808}}) {
+    EXPECT_NEAR(glm::length(octahedral_normal(p)), 1.0, 1e-15);
+  }
+}
+
 TEST(Octahedral, LengthDoesNotMatter) {
   for (const float scale : {1e-44F, 1e-30F, 1e-3F, 1e10F, 1e37F}) {
     EXPECT_EQ(nearest_octahedral_point({scale, -scale, scale}, 811), nearest_octahedral_point({1.0F, -1.0F, 1.0F}, 811))

@@ -2,7 +2,9 @@
 // Whole DAGs: no point of the source is farther from a cut than the cut says, nor the other way round.
 #include "builder/measure/measure_levels.h"
 
+#include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include <gtest/gtest.h>
 #include <tbb/task_arena.h>
@@ -12,6 +14,7 @@
 #include "builder/plan/plan.h"
 #include "builder/prepare/prepare.h"
 #include "hand_made.h"
+#include "judge/metrics/surface_bracket.h"
 #include "lab/samples/samples.h"
 
 namespace meshlode::builder {
@@ -21,7 +24,9 @@ struct Built {
   PreparedMesh mesh;
   LodDag dag;
 
-  void measure() { EXPECT_TRUE(builder::measure(mesh, format::ErrorTier::kMeasured, dag)); }
+  void measure(format::ErrorTier tier = format::ErrorTier::kMeasured) {
+    EXPECT_TRUE(builder::measure(mesh, tier, dag));
+  }
 };
 
 Built build(const scene::Primitive& shape) {
@@ -60,16 +65,65 @@ TEST(MeasureLevels, CutsAreAsTrueAsTheySay) {
   }
 }
 
+judge::Surface surface_of(const test::Soup& soup) {
+  judge::Surface surface;
+  for (const TriangleCorners& t : soup) {
+    const auto first = static_cast<std::uint32_t>(surface.positions.size());
+    surface.positions.insert(surface.positions.end(), t.begin(), t.end());
+    surface.triangles.push_back({first, first + 1, first + 2});
+  }
+  return surface;
+}
+
+/// A distance that some point of one surface has from the other, or more than the largest.
+double met_distance(const judge::Surface& from, const judge::Surface& to, double enough) {
+  const judge::TriangleTree tree(to);
+  std::vector<std::uint32_t> all(from.triangles.size());
+  std::iota(all.begin(), all.end(), 0U);
+  judge::BracketOptions options;
+  options.enough = enough;
+  options.budget = 16 * (from.triangles.size() + to.triangles.size());
+  return judge::bracket_one_way(from, all, {to, tree}, options).lower;
+}
+
+/// So many clusters that their units are divided in several blocks, and so many levels that groups are off by more than
+/// the size of a unit. Without samples.
+TEST(MeasureLevels, CutsOfManyClustersAreAsTrueAsTheySay) {
+  for (const scene::Primitive& shape : {lab::make_rock(52), lab::make_terrain(128, 128)}) {
+    Built built = build(shape);
+    built.measure();
+    ASSERT_GT(built.mesh.triangles.size() / 128, 192U);
+    const judge::Surface source = surface_of(test::source_of(built.mesh));
+    std::vector<double> errors;
+    for (const DagGroup& group : built.dag.groups) {
+      if (!group.is_terminal) errors.push_back(group.error);
+    }
+    std::sort(errors.begin(), errors.end());
+    for (const std::size_t part : {2, 8, 13, 15, 16}) {
+      const double error = errors[(errors.size() - 1) * part / 16];
+      const judge::Surface cut = surface_of(test::cut_of(built.mesh, built.dag, error));
+      EXPECT_LE(met_distance(source, cut, error), error * (1.0 + 1e-6)) << part;
+      EXPECT_LE(met_distance(cut, source, error), error * (1.0 + 1e-6)) << part;
+    }
+  }
+}
+
+void expect_errors_grow(const LodDag& dag) {
+  for (const DagCluster& c : dag.clusters) {
+    if (!c.own_group.is_valid()) continue;
+    const DagGroup &fine = dag.groups[c.own_group.value], &coarse = dag.groups[c.coarser_group.value];
+    EXPECT_LE(fine.error, coarse.error);
+    EXPECT_LE(fine.normal_deviation, coarse.normal_deviation);
+    EXPECT_LE(fine.uv_deviation, coarse.uv_deviation);
+  }
+}
+
 TEST(MeasureLevels, ErrorsGrowFromFineToCoarse) {
   for (const scene::Primitive& shape : shapes()) {
     Built built = build(shape);
-    built.measure();
-    for (const DagCluster& c : built.dag.clusters) {
-      if (!c.own_group.is_valid()) continue;
-      const DagGroup &fine = built.dag.groups[c.own_group.value], &coarse = built.dag.groups[c.coarser_group.value];
-      EXPECT_LE(fine.error, coarse.error);
-      EXPECT_LE(fine.normal_deviation, coarse.normal_deviation);
-      EXPECT_LE(fine.uv_deviation, coarse.uv_deviation);
+    for (const format::ErrorTier tier : {format::ErrorTier::kMeasured, format::ErrorTier::kCertified}) {
+      built.measure(tier);
+      expect_errors_grow(built.dag);
     }
   }
 }

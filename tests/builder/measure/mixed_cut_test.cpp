@@ -64,6 +64,23 @@ TEST(MeasureLevels, ALoosePieceThatWentIsAsFarAsItIsFromTheRest) {
   EXPECT_NEAR(error_of(one_group(strip(0, 2, 0) + piece, strip(0, 2, 0))), 1.25, 1e-9);
 }
 
+/// Where the error of a finer group is larger than a piece of the source, the whole of the piece may be farther still.
+TEST(MeasureLevels, APieceSmallerThanWhatIsKnownIsMeasuredToo) {
+  const Soup piece{{Vec3d(0.5, 0.5, 3.0), Vec3d(0.5625, 0.5, 3.0), Vec3d(0.5, 0.5625, 3.0)}};
+  HandMade made;
+  made.add_group(2, true);
+  made.add_cluster(2, GroupId(1U), strip(0, 2, 0.5));
+  made.add_group(1, false);
+  made.add_cluster(1, GroupId(2U), strip(0, 2, 0.5));
+  made.add_cluster(1, GroupId(2U), piece);
+  made.add_group(0, false);
+  made.add_cluster(0, GroupId(), strip(0, 2, 0));
+  made.add_cluster(0, GroupId(), piece);
+  measure(made);
+  EXPECT_NEAR(made.dag.groups[2].error, 0.5, 1e-9);
+  EXPECT_NEAR(made.dag.groups[1].error, 2.5, 1e-9);
+}
+
 TEST(MeasureLevels, ANeedleThatWentIsMeasuredToItsEnd) {
   const Soup needle{{Vec3d(0.5, 0.5, 0.0), Vec3d(0.501953125, 0.5, 0.0), Vec3d(0.5, 0.5, 1.5)}};
   EXPECT_NEAR(error_of(one_group(strip(0, 2, 0) + needle, strip(0, 2, 0))), 1.5, 1e-9);

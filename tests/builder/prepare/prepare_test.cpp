@@ -10,8 +10,10 @@
 
 #include <gtest/gtest.h>
 
+#include "builder/gap_label.h"
 #include "builder/prepare/corners.h"
 #include "builder/prepare/median_edge.h"
+#include "builder/prepare/open_border.h"
 #include "lab/samples/samples.h"
 
 namespace meshlode::builder {
@@ -358,6 +360,73 @@ TEST(Prepare, CountsPiecesByWhatTouches) {
   EXPECT_EQ(prepare(lab::make_sphere(4)).piece_count, 1U);
   EXPECT_EQ(prepare(lab::make_box_soup(37)).piece_count, 37U);
   EXPECT_EQ(prepare(lab::make_double_cone(12)).piece_count, 1U) << "two cones that share their tip";
+}
+
+/// Two squares side by side whose common edge has vertices of its own on either side, and one of them twice.
+TEST(OpenBorder, IsWhereOneTriangleHasAnEdgeWhateverVerticesAreCalled) {
+  Corners corners;
+  const auto square = [&](double x) {
+    const auto first = static_cast<std::uint32_t>(corners.positions.size());
+    for (const Vec3d& p : {Vec3d(x, 0, 0), Vec3d(x + 1, 0, 0), Vec3d(x + 1, 1, 0), Vec3d(x, 1, 0)})
+      corners.positions.push_back(p);
+    for (const std::uint32_t k : {0U, 1U, 2U, 0U, 2U, 3U}) corners.triangles.push_back(first + k);
+  };
+  for (const double x : {0.0, 1.0, 2.0, 1.0}) square(x);
+  corners.positions.emplace_back(9.0);  // of no triangle
+  std::vector<std::uint8_t> is_used(corners.positions.size(), 1);
+  is_used.back() = 0;
+  std::vector<Vec3i> points;
+  for (const Vec3d& p : corners.positions) points.emplace_back(2.0 * p);
+  std::vector<std::uint8_t> expected;
+  std::vector<Vec3i> positions;
+  for (int x = 0; x <= 3; ++x) {
+    for (int y = 0; y <= 1; ++y) positions.emplace_back(2 * x, 2 * y, 0);
+  }
+  positions.emplace_back(18);
+  EXPECT_EQ(find_open_border(corners, is_used, points, positions),
+            (std::vector<std::uint8_t>{1, 1, 1, 1, 1, 1, 1, 1, 0}));
+  // A third row above: what lies between is inside.
+  for (const double x : {0.0, 1.0, 2.0}) {
+    square(x);
+    for (std::size_t v = corners.positions.size() - 4; v < corners.positions.size(); ++v) {
+      corners.positions[v].y += 1.0;
+      points.emplace_back(2.0 * corners.positions[v]);
+      is_used.push_back(1);
+    }
+  }
+  EXPECT_EQ(find_open_border(corners, is_used, points, positions),
+            (std::vector<std::uint8_t>{1, 1, 1, 0, 1, 0, 1, 1, 0}));
+}
+
+TEST(Prepare, ATriangleWithoutAGapTakesTheNarrowestAroundIt) {
+  const scene::Primitive sheet = lab::make_plane(4);
+  std::vector<std::uint8_t> gaps(sheet.indices.size() / 3, 0);
+  const GapPair narrow = GapPair::of_byte(0x35), wide = GapPair::of_byte(0x12);
+  gaps[0] = wide.byte();
+  gaps[1] = narrow.byte();
+  PrepareOptions options;
+  options.gaps = gaps;
+  options.gap_reach = 1.0;
+  const PreparedMesh mesh = prepare(sheet, options);
+  int of_narrow = 0, of_wide = 0, of_neither = 0;
+  for (const std::uint32_t label : mesh.triangle_material) {
+    const std::uint8_t found = gap_pair_of(label).byte();
+    of_narrow += found == narrow.byte() ? 1 : 0;
+    of_wide += found == wide.byte() ? 1 : 0;
+    of_neither += found == 0 ? 1 : 0;
+  }
+  EXPECT_GE(of_wide, 1) << "who has a gap keeps it";
+  EXPECT_GT(of_narrow, 3);
+  EXPECT_GT(of_neither, 8) << "no farther than the next triangle";
+}
+
+TEST(ChooseGrid, EdgesSpanEightStepsAndNoMoreThanSixteen) {
+  for (const double edge : {1e-4, 0.9e-4, 0.6e-4}) {
+    const auto grid = choose_grid(1.0, 3.0, edge, {});
+    ASSERT_TRUE(grid.ok());
+    EXPECT_GE(edge / grid->step(), 8.0) << edge;
+    EXPECT_LT(edge / grid->step(), 16.0) << edge;
+  }
 }
 
 TEST(ChooseGrid, AGivenStepIsASmallOddMantissa) {

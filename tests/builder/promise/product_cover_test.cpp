@@ -110,6 +110,24 @@ TEST(ProductCover, ASurfaceIsAsGoodAsItselfAndNothingIsAsGoodAsNothing) {
   for (const TriangleBound& bound : step.bounds) EXPECT_EQ(bound.to_source, std::numeric_limits<double>::infinity());
 }
 
+/// A triangle that is within what is enough of one that is named is as far as its farthest corner, and nothing is
+/// looked for.
+TEST(ProductCover, OfPartnersTheFarthestCornerCounts) {
+  Surface8 a, b;
+  for (std::size_t k = 0; k < 3; ++k) {
+    ProductPoint<kSpace> corner{};
+    corner[k] = 4.0;
+    b.points.push_back(corner);
+    corner[7] = k == 0 ? 0.3 : k == 1 ? 0.1 : 0.2;
+    a.points.push_back(corner);
+  }
+  a.triangles = b.triangles = {{0, 1, 2}};
+  const std::vector<std::uint32_t> partners{0};
+  const std::vector<GivenPiece> given = cover_product_surface(a, b, 1.0, partners);
+  ASSERT_EQ(given.size(), 1U);
+  EXPECT_NEAR(given[0].bound, 0.3, 1e-12);
+}
+
 TEST(ProductCover, WhatIsGoodEnoughIsNotLookedAtCloser) {
   SplitMix64 random(34);
   const Surface8 a = soup8(random, 30, 1.0, 0.5, 0), b = soup8(random, 30, 1.0, 0.5, 0);

@@ -14,6 +14,7 @@
 #include "builder/simplify/attribute_scales.h"
 #include "support/drawn_mesh.h"
 #include "support/random.h"
+#include "support/sanitized.h"
 
 namespace meshlode::builder {
 namespace {
@@ -222,7 +223,7 @@ TEST(PaintedGuard, ChartsOfASeamAreKeptApart) {
 TEST(PaintedGuard, IsThatOfEveryPointAgainstEveryTriangle) {
   RandomSource random(211);
   int moved = 0, by_normal = 0;
-  for (int round = 0; round < 60; ++round) {
+  for (int round = 0; round < (test::kIsSanitized ? 60 : 400); ++round) {
     const std::uint32_t count = 5 + random.below(7);
     std::vector<Vec3i> points;
     for (std::uint32_t v = 0; v < count; ++v) points.push_back(random_point(random, 1000));
@@ -263,6 +264,40 @@ TEST(PaintedGuard, IsThatOfEveryPointAgainstEveryTriangle) {
   }
   EXPECT_GT(moved, 45);
   EXPECT_GT(by_normal, 12);
+}
+
+/// A further set of UVs that is the same everywhere moves nothing, though it is looked at.
+TEST(PaintedGuard, MoreDimensionsThanMostMeshesHaveAreLookedAt) {
+  DrawnMesh drawn = closed_fan();
+  RandomSource random(213);
+  SimplifyInput one = as_input(drawn), two;
+  one.layout.uv_set_count = 1;
+  one.layout.has_normal = true;
+  for (std::size_t i = 0; i < drawn.wedge_position.size() * one.layout.stride(); ++i)
+    one.wedge_attributes.push_back(static_cast<float>(random.between(-1.0, 1.0)));
+  two = one;
+  two.layout.uv_set_count = 2;
+  two.wedge_attributes.clear();
+  for (std::size_t w = 0; w < drawn.wedge_position.size(); ++w) {
+    const auto own = one.wedge_attributes.begin() + static_cast<std::ptrdiff_t>(5 * w);
+    two.wedge_attributes.insert(two.wedge_attributes.end(), own, own + 5);
+    two.wedge_attributes.insert(two.wedge_attributes.end(), {0.5F, 0.25F});
+  }
+  PaintedUnits of = units(2.0, 3.0, 5.0);
+  WeighedEdge weighed(drawn, one);
+  const double expected = weighed.distance2(of);
+  of.uv[1] = {7.0, 11.0};
+  using MostQuadrics = AttributeQuadrics<double, 15>;
+  MostQuadrics attributes(two, std::vector<double>(two.layout.stride(), 1.0), true);
+  for (std::uint32_t t = 0; t < drawn.mesh.triangle_count(); ++t) {
+    (void)attributes.add_face({drawn.mesh.wedge(3 * t), drawn.mesh.wedge(3 * t + 1), drawn.mesh.wedge(3 * t + 2)},
+                              face_of(drawn.mesh, drawn.places, t));
+  }
+  const GroupLocks locks(two.is_locked, two.is_wedge_shared, two.wedge_position);
+  PaintedGuard<double, 15> guard(two, of, drawn.places);
+  EXPECT_GT(expected, 0.0);
+  EXPECT_NEAR(guard.distance2(drawn.mesh, drawn.places, locks, weighed.star, weighed.classes, attributes, 0.0),
+              expected, 1e-9 * expected);
 }
 
 TEST(PaintedGuard, NumbersThatAreNoneDoNotSpread) {
