@@ -217,11 +217,6 @@ TEST(Models, BunnysDagKeepsItsLimitsAndValidateAndVerifyFindNothing) {
         {.levels = 12, .clusters = 2360, .fill_of_level0 = 0.97, .fill_of_levels = 0.88, .root = 0.08});
 }
 
-TEST(Models, DragonsDagKeepsItsLimitsAndValidateAndVerifyFindNothing) {
-  MESHLODE_NEEDS_MODEL("dragon.glb")
-  judge(build(import_model("dragon.glb")), {.fill_of_level0 = 0.95, .root = 0.10});
-}
-
 TEST(Models, BunnyOfThreeMaterialsHasOneRootNoStuckGroupAndNoFindings) {
   MESHLODE_NEEDS_MODEL("bunny-three-materials.glb")
   std::optional<scene::Scene> scene = import_model("bunny-three-materials.glb");
@@ -250,6 +245,11 @@ TEST(Models, ValidateAndVerifyFindNothingInSmallOnes) {
 }
 
 #else
+
+TEST(LargeModels, DragonsDagKeepsItsLimitsAndValidateAndVerifyFindNothing) {
+  MESHLODE_NEEDS_MODEL("dragon.glb")
+  judge(build(import_model("dragon.glb")), {.fill_of_level0 = 0.95, .root = 0.10});
+}
 
 TEST(LargeModels, FacetedBunnyWhoseNormalsHaveToBeStoredHasOneRootNoStuckGroupAndNoFindings) {
   MESHLODE_NEEDS_MODEL("bunny.glb")

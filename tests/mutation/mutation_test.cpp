@@ -23,7 +23,7 @@ namespace meshlode {
 namespace {
 
 #ifndef MESHLODE_MUTANTS_PER_KIND
-#define MESHLODE_MUTANTS_PER_KIND 8
+#define MESHLODE_MUTANTS_PER_KIND 4
 #endif
 
 constexpr std::uint64_t kSeed = 20260101;

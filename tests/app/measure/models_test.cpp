@@ -46,8 +46,7 @@ TEST_P(Models, MeasuredAsBuilt) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Models,
-                         testing::Values("bunny.glb", "bunny-three-materials.glb", "FlightHelmet/FlightHelmet.gltf",
-                                         "spot.glb", "fandisk.glb"));
+                         testing::Values("bunny.glb", "FlightHelmet/FlightHelmet.gltf", "spot.glb", "fandisk.glb"));
 
 }  // namespace
 }  // namespace meshlode::app

@@ -375,7 +375,7 @@ TEST(CoverageDrift, SamplesThatSeeSomethingCountNotThoseOfWhatAMaskHides) {
     source.push_back(there);
     moved.push_back(elsewhere);
   }
-  for (const double size : {0.040, 0.043, 0.046, 0.050, 0.054}) {
+  for (const double size : {0.040, 0.054}) {
     const auto drift = measure_coverage(source, moved, masks, size);
     ASSERT_TRUE(drift);
     EXPECT_NEAR(drift->mean, 0.0, 0.02) << size;
