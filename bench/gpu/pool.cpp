@@ -45,6 +45,9 @@ struct FrameTimes {
 
 std::vector<PassTimes> compare_passes(FrameTimes& all, FrameTimes& pool) {
   std::vector<PassTimes> out;
+  for (const std::string& name : pool.names) {
+    if (std::find(all.names.begin(), all.names.end(), name) == all.names.end()) all.names.push_back(name);
+  }
   for (const std::string& name : all.names)
     out.push_back({name, median_of(all.passes[name]), median_of(pool.passes[name])});
   return out;

@@ -27,7 +27,7 @@ struct PassTimes {
 struct PoolReport {
   std::uint32_t pages = 0, slots = 0;
   double all_ms = 0.0, pool_ms = 0.0;                 ///< medians of the frames' passes, by the device's clock
-  std::vector<PassTimes> passes;                      ///< in the order of a frame
+  std::vector<PassTimes> passes;                      ///< in the order of a frame; those of the pool alone are the last
   std::uint64_t all_clusters = 0, pool_clusters = 0;  ///< of all frames together
   std::uint64_t loads = 0;
   std::uint32_t incomplete = 0;  ///< frames that lacked a page

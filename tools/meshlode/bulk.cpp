@@ -120,16 +120,12 @@ void write_entry(JsonWriter& json, const BulkInput& input, const FileOutcome& ou
   json.end_object();
 }
 
-/// Of an asset whose pictures differ from its source's, which verify draws once more with more pixels (V211).
-constexpr std::uint64_t kMemoryOfPictures = 140u << 20u;
-
-std::size_t files_at_once(const std::vector<BulkInput>& files, std::uint64_t max_memory) {
+std::size_t files_at_once(const std::vector<BulkInput>& files, std::uint64_t max_memory, std::uint64_t besides) {
   std::vector<std::uint64_t> bytes;
   for (const BulkInput& input : files) {
-    const std::uint64_t of_source = input.source.empty() ? 0 : app::weigh_scene(input.source) + kMemoryOfPictures;
-    bytes.push_back(app::weigh_scene(input.path) + of_source);
+    bytes.push_back(app::weigh_scene(input.path) + (input.source.empty() ? 0 : app::weigh_scene(input.source)));
   }
-  return count_at_once(std::move(bytes), max_memory);
+  return count_at_once(std::move(bytes), max_memory, besides);
 }
 
 FileOutcome work_on(const BulkVerb& verb, const BulkInput& input) {
@@ -243,17 +239,18 @@ int run_bulk(const BulkVerb& verb, const std::vector<BulkInput>& files, const Bu
   };
   JobLimit limit(words.jobs);
   limit.run([&] {
-    parallel_for_each_in_order(files.size(), files_at_once(files, *max_memory), [&](std::size_t i) {
-      const auto start = std::chrono::steady_clock::now();
-      FileOutcome outcome = work_on(verb, files[i]);
-      const std::lock_guard lock(mutex);
-      tests[i].seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-      done[i] = std::move(outcome);
-      for (; next < files.size() && done[next]; ++next) {
-        tell(next);
-        done[next] = FileOutcome{};  // it may hold much
-      }
-    });
+    parallel_for_each_in_order(
+        files.size(), files_at_once(files, *max_memory, verb.memory_besides), [&](std::size_t i) {
+          const auto start = std::chrono::steady_clock::now();
+          FileOutcome outcome = work_on(verb, files[i]);
+          const std::lock_guard lock(mutex);
+          tests[i].seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+          done[i] = std::move(outcome);
+          for (; next < files.size() && done[next]; ++next) {
+            tell(next);
+            done[next] = FileOutcome{};  // it may hold much
+          }
+        });
   });
   json.end_array();
   if (!verb.has_bare_documents) json.field("exit_code", worst);

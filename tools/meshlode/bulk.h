@@ -85,7 +85,8 @@ struct BulkVerb {
   const char* name;
   std::vector<BulkColumn> columns;  ///< between "result" and "file"
   std::function<FileOutcome(const BulkInput&)> work;
-  bool has_bare_documents = false;  ///< the JSON lists the documents alone: a file that cannot be read has none
+  bool has_bare_documents = false;   ///< the JSON lists the documents alone: a file that cannot be read has none
+  std::uint64_t memory_besides = 0;  ///< of each file, bytes: what does not grow with its size
 };
 
 /// The arguments, `name` in the help, and `--manifest`.

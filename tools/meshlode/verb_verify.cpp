@@ -32,6 +32,9 @@ namespace meshlode::cli {
 
 namespace {
 
+/// Of one asset that differs from its source in pictures: both are drawn once more with more pixels (V211).
+constexpr std::uint64_t kMemoryOfPictures = 140U << 20U;
+
 constexpr ColoredWord kStatusWords[] = {{"ok", Color::kGreen},
                                         {"FAILED", Color::kRed},
                                         {"skipped", Color::kYellow},
@@ -295,10 +298,11 @@ int run_verify(const Verb& verb, std::span<char* const> args) {
     return print_error(
         {ErrorCode::kUsage, "--source", "the manifest names the scene of each asset; give one of the two"});
   }
-  return run_bulk({"verify",
-                   {{"checks", 6}, {"failed", 6}, {"findings", 8}},
-                   [&](const BulkInput& input) { return verify_file(input, command); }},
-                  inputs->files, bulk, output);
+  BulkVerb bulk_verb{"verify", {{"checks", 6}, {"failed", 6}, {"findings", 8}}, [&](const BulkInput& input) {
+                       return verify_file(input, command);
+                     }};
+  if (needs_sources && !options.is_quick) bulk_verb.memory_besides = kMemoryOfPictures;
+  return run_bulk(bulk_verb, inputs->files, bulk, output);
 }
 
 }  // namespace

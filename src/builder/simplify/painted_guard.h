@@ -58,7 +58,7 @@ class PaintedGuard {
     gather_old(view);
     gather_new(view);
     if (new_.empty()) return 0.0;  // the piece goes: a matter of positions
-    // With a number that is known loops have no ends to look for; most meshes that promise texels have 5.
+    // Loops of a number that is known are unrolled. Most meshes that promise texels have 5 dimensions.
     if constexpr (kMostDimensions > 5) {
       if (dimensions_ <= 5) return std::min(reached2<5>(least), kFarthest2);
     }
@@ -72,7 +72,7 @@ class PaintedGuard {
   static constexpr std::size_t kMostDimensions = 3 + Capacity + 3;  ///< the last: normals of triangles
   static constexpr double kFarthest2 = 1e30;
   static constexpr std::size_t kNoTwin = std::numeric_limits<std::size_t>::max();
-  using Point = ProductPoint<kMostDimensions>;  ///< positions, then what counts; 0 behind dimensions_
+  using Point = ProductPoint<kMostDimensions>;  ///< positions, then what counts; of corners 0 behind dimensions_
   using Values = typename Attributes::Values;
   struct View {
     const CollapseMesh& mesh;

@@ -19,8 +19,8 @@ constexpr std::size_t kMostSurfaces = 64;
 /// Pixels of a finer picture along a side of one: with 4 a slanted ribbon of a twentieth of a pixel leaves dots about
 /// five finer pixels apart, which is within what is allowed.
 constexpr std::uint32_t kFiner = 4;
-/// Of a finer picture: those of 640 × 640, the largest that verify draws, have as many, and take 350 MB. Larger ones
-/// are judged as they are.
+/// Of a finer picture: those of 640 × 640, which is more than verify draws, have as many, and take 350 MB. Larger
+/// ones are judged as they are.
 constexpr std::uint64_t kMostFinerPixels = std::uint64_t{2560} * 2560;
 
 double distance_of(const draw::Projection& p, std::uint32_t depth) {

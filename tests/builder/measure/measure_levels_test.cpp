@@ -75,7 +75,7 @@ judge::Surface surface_of(const test::Soup& soup) {
   return surface;
 }
 
-/// A distance that some point of one surface has from the other, or more than the largest.
+/// A distance that some point of one surface has from the other: the largest, but for what the search leaves open.
 double met_distance(const judge::Surface& from, const judge::Surface& to, double enough) {
   const judge::TriangleTree tree(to);
   std::vector<std::uint32_t> all(from.triangles.size());

@@ -362,7 +362,7 @@ TEST(Prepare, CountsPiecesByWhatTouches) {
   EXPECT_EQ(prepare(lab::make_double_cone(12)).piece_count, 1U) << "two cones that share their tip";
 }
 
-/// Two squares side by side whose common edge has vertices of its own on either side, and one of them twice.
+/// Three squares side by side, each with vertices of its own; the middle one is there twice.
 TEST(OpenBorder, IsWhereOneTriangleHasAnEdgeWhateverVerticesAreCalled) {
   Corners corners;
   const auto square = [&](double x) {
@@ -385,7 +385,7 @@ TEST(OpenBorder, IsWhereOneTriangleHasAnEdgeWhateverVerticesAreCalled) {
   positions.emplace_back(18);
   EXPECT_EQ(find_open_border(corners, is_used, points, positions),
             (std::vector<std::uint8_t>{1, 1, 1, 1, 1, 1, 1, 1, 0}));
-  // A third row above: what lies between is inside.
+  // A row above: what lies between is inside.
   for (const double x : {0.0, 1.0, 2.0}) {
     square(x);
     for (std::size_t v = corners.positions.size() - 4; v < corners.positions.size(); ++v) {

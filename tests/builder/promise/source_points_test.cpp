@@ -42,9 +42,13 @@ struct FivePoints {
 TEST(SourcePoints, AreEachVertexEachMiddleAndManyBetween) {
   const FivePoints five(50);
   const std::vector<SourcePoint> all = five.points.choose();
-  std::size_t vertices = 0;
-  for (const SourcePoint& point : all) vertices += point.is_vertex() ? 1 : 0;
+  std::size_t vertices = 0, middles = 0;
+  for (const SourcePoint& point : all) {
+    vertices += point.is_vertex() ? 1 : 0;
+    middles += point.b == 1.0F / 3.0F && point.c == 1.0F / 3.0F ? 1 : 0;
+  }
   EXPECT_EQ(vertices, five.source.points.size());
+  EXPECT_EQ(middles, five.source.triangles.size());
   EXPECT_NEAR(static_cast<double>(all.size()), 100000.0, 1000.0) << "however few triangles there are";
 }
 
