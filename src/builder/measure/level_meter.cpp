@@ -90,9 +90,11 @@ void LevelMeter::measure_level(std::uint32_t first_group, std::uint32_t end_grou
   link_source();
   parallel_for_each_index(made.size(), 1, [&](std::size_t i) { check_made(surface, made[i]); });
   merge(made);
-  finish_groups(made);
-  wait_for_others(surface, chunks);
-  hand_on(surface, chunks);
+  const auto finish = [&] {
+    finish_groups(made);
+    wait_for_others(surface, chunks);
+  };
+  parallel_all(finish, [&] { hand_on(surface, chunks); });
 }
 
 void LevelMeter::begin_level(std::uint32_t first_group, std::uint32_t end_group) {
