@@ -69,5 +69,30 @@ TEST(Frustum, OfACameraIsWhatItsPictureShows) {
   EXPECT_LT(inside(frustum_of(camera), {0.0, 2.01, 0.0}), 0.0);
 }
 
+/// A plane across an axis, a thousand million units away, of a length whose square is 0 or infinite.
+TEST(Frustum, PlanesOfAnyLengthHoldForInstancesFarAway) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (const double sign : {-1.0, 1.0}) {
+      for (const int log2 : {-700, 0, 700}) {
+        Frustum frustum;
+        frustum.planes[0][axis] = std::ldexp(sign, log2);
+        frustum.planes[0][3] = std::ldexp(-sign * (1e9 + 0.5), log2);
+        format::InstanceRecord instance{};
+        for (std::size_t k = 0; k < 3; ++k) instance.transform[5 * k] = 1.0;
+        instance.transform[4 * axis + 3] = 1e9;
+        const MeshFrustum of_mesh = frustum_of_mesh(&frustum, instance, format::MeshRecord{});
+        const auto crossed = [&](double along) {
+          float center[3] = {0.0F, 0.0F, 0.0F};
+          center[axis] = static_cast<float>(0.5 + sign * along);
+          return crossed_planes(of_mesh, of_mesh.crossed, center, 0.125F);
+        };
+        EXPECT_EQ(crossed(0.25), 0U);
+        EXPECT_EQ(crossed(0.0), 1U);
+        EXPECT_EQ(crossed(-0.25), kOutside);
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace meshlode::run
