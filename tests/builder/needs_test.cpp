@@ -300,7 +300,7 @@ TEST(NeedsDeathTest, MemoryIsEstimatedFromAboveAndCloseEnough) {
   expect_close(measure([] { return loose(4000, 0.003); }, kMeasured, 2, AggregateChoice::kAlways), "of 4,000 crumbs");
   expect_close(measure([] { return loose(4000, 0.0005); }, kMeasured, 2, AggregateChoice::kAlways), "of tiny ones");
   expect_close(measure([] { return loose(20000); }, kMeasured, 1, AggregateChoice::kAlways), "of 20,000 triangles");
-  expect_close(measure([] { return loose(60000); }, kMeasured, 2, AggregateChoice::kAlways), "of 60,000");
+  expect_close(measure([] { return loose(200000); }, kMeasured, 2, AggregateChoice::kAlways), "of 200,000");
   for (const format::ErrorTier tier : {kMeasured, kCertified}) {
     expect_close(
         measure([] { return sheets(80, 1, true); }, tier, 2, AggregateChoice::kNever, format::Promise::kAppearance),

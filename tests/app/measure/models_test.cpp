@@ -45,8 +45,12 @@ TEST_P(Models, MeasuredAsBuilt) {
   }
 }
 
+#ifdef MESHLODE_LARGE_MODELS
+INSTANTIATE_TEST_SUITE_P(More, Models, testing::Values("bunny-three-materials.glb"));
+#else
 INSTANTIATE_TEST_SUITE_P(All, Models,
                          testing::Values("bunny.glb", "FlightHelmet/FlightHelmet.gltf", "spot.glb", "fandisk.glb"));
+#endif
 
 }  // namespace
 }  // namespace meshlode::app

@@ -377,7 +377,6 @@ TEST(OpenBorder, IsWhereOneTriangleHasAnEdgeWhateverVerticesAreCalled) {
   is_used.back() = 0;
   std::vector<Vec3i> points;
   for (const Vec3d& p : corners.positions) points.emplace_back(2.0 * p);
-  std::vector<std::uint8_t> expected;
   std::vector<Vec3i> positions;
   for (int x = 0; x <= 3; ++x) {
     for (int y = 0; y <= 1; ++y) positions.emplace_back(2 * x, 2 * y, 0);

@@ -76,10 +76,10 @@ TEST(Frustum, PlanesOfAnyLengthHoldForInstancesFarAway) {
       for (const int log2 : {-700, 0, 700}) {
         Frustum frustum;
         frustum.planes[0][axis] = std::ldexp(sign, log2);
-        frustum.planes[0][3] = std::ldexp(-sign * (1e9 + 0.5), log2);
+        frustum.planes[0][3] = std::ldexp(-sign * (1e9 + 3.5), log2);
         format::InstanceRecord instance{};
         for (std::size_t k = 0; k < 3; ++k) instance.transform[5 * k] = 1.0;
-        instance.transform[4 * axis + 3] = 1e9;
+        instance.transform[4 * axis + 3] = 1e9 + 3.0;  // no float
         const MeshFrustum of_mesh = frustum_of_mesh(&frustum, instance, format::MeshRecord{});
         const auto crossed = [&](double along) {
           float center[3] = {0.0F, 0.0F, 0.0F};
