@@ -2,11 +2,11 @@
 # One floor = one folder under src/ = the library meshlode_<floor>; its rooms are the folders inside. cmake/layers.txt says
 # which floor may include which, and a test holds it.
 
-# The floors share a precompiled header: reading the standard library is a third of what compiling them costs. Of other
-# headers every file of a release build is still seen to include what it needs. Whether it includes the standard ones is
-# checked by a test (tests/house/standard_headers_test.cpp). Compiler caches do not see through precompiled headers: with
-# one each file reads for itself, as it does for clang-tidy. Under sanitizers GLM is among them, by the house's own header, which sets
-# its options first: with others its types would be passed in another way.
+# The floors share a precompiled header: reading the standard library is a third of what compiling them costs. Whether each
+# file includes the standard headers that it needs is checked by a test (tests/house/standard_headers_test.cpp). Compiler
+# caches do not see through precompiled headers: with one each file reads for itself, as it does for clang-tidy. Under
+# sanitizers GLM is among them, by the house's own header, which sets its options first: with others its types would be
+# passed in another way.
 # QUICKLY: not optimised under sanitizers, which takes off more than half of the rest, for code whose running time does
 # not matter there.
 function(meshlode_share_floor_headers name)

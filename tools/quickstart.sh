@@ -11,7 +11,7 @@ jobs=${JOBS:-$(nproc)}
 build=build/release
 
 tools/install-deps.sh
-cmake --preset release -DMESHLODE_TESTS=OFF >/dev/null
+cmake --preset release -DMESHLODE_TESTS=OFF -DMESHLODE_UNITY=ON >/dev/null
 ninja -C "$build" -j "$jobs" meshlode_cli
 meshlode=$build/meshlode
 
