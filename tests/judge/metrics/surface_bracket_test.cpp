@@ -245,6 +245,24 @@ TEST(SurfaceBracket, HoldsDenseSamplesOfSoupsAtAnyOffset) {
   }
 }
 
+TEST(SurfaceBracket, DecidesWhatLiesAmongManyTrianglesThatCross) {
+  RandomSource random(77);
+  const auto make_large = [&](std::size_t count, double size) {
+    std::vector<std::array<Vec3d, 3>> triangles(count);
+    for (auto& t : triangles) t = {random.in_cube(size), random.in_cube(size), random.in_cube(size)};
+    return triangles_of(triangles);
+  };
+  const Surface crossing = make_large(3000, 1.0), among = make_large(20, 0.5);
+  const Bracket exact = bracket(among, crossing, {.enough = 0.005, .budget = 1000000});
+  EXPECT_EQ(exact.undecided, 0U);
+  EXPECT_LE(exact.upper, exact.lower * 1.0021);
+  const Bracket within = bracket(among, crossing, {.enough = 0.01, .budget = 1000000});
+  EXPECT_EQ(within.undecided, 0U);
+  EXPECT_EQ(within.upper, 0.01);
+  EXPECT_LE(within.lower, exact.upper);
+  EXPECT_LT(within.splits, 34000U) << "it takes 36,533 without those that pieces beside it have met";
+}
+
 TEST(SurfaceBracket, OfFoldedSheetsHoldsDenseSamples) {
   // Zigzags against each other, of another number of folds.
   for (const auto& [first, second] : {std::pair{7, 5}, std::pair{12, 30}}) {
