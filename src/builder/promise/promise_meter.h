@@ -109,11 +109,12 @@ class PromiseMeter {
   /// Each point of the source goes to the cluster of level 0 that it lies on. Returns how far level 0 is off.
   double place_samples(std::vector<std::vector<Sample>>& carried) const {
     Surface level0;
-    std::vector<std::uint32_t> cluster_of;
+    std::vector<std::uint32_t> cluster_of, clusters;
     for (std::uint32_t c = 0; c < dag_.clusters.size(); ++c) {
       if (dag_.clusters[c].own_group.is_valid()) continue;
       surfaces_.add_cluster(dag_.clusters[c], level0);
       cluster_of.resize(level0.triangles.size(), c);
+      clusters.push_back(c);
     }
     if (level0.triangles.empty()) return 0.0;
     const Tree tree(level0);
@@ -122,36 +123,39 @@ class PromiseMeter {
     std::vector<double> farthest2(chunk_count(samples.size(), kChunk), 0.0);
     parallel_for_each_chunk(samples.size(), kChunk, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
       std::uint32_t place = kNoId;
+      FarPoints list;
       for (std::size_t i = begin; i < end; ++i) {
         // Within what quantization moves it by, one triangle is as good as another.
         const auto hit =
             tree.find(source_.at(samples[i].triangle, samples[i].b, samples[i].c), place, quantization * quantization);
         if (hit.triangle == kNoId) continue;  // its distance is not a number
         samples[i].place = place = hit.triangle;
-        farthest2[chunk] = std::max(farthest2[chunk], hit.distance2);
+        if (space_.is_flat())
+          list.add({hit.distance2, samples[i].triangle, double{samples[i].b}, double{samples[i].c}, hit.triangle});
       }
+      farthest2[chunk] = climb_all(tree, list, 0.0);
     });
     for (const Sample& sample : samples) carried[cluster_of[sample.place]].push_back(sample);
     if (!space_.is_flat()) return quantization;
+    std::vector<double> back2(clusters.size(), 0.0);
+    parallel_for_each_index(clusters.size(), 1, [&](std::size_t i) {
+      Surface surface;
+      surfaces_.add_cluster(dag_.clusters[clusters[i]], surface);
+      back2[i] = measure_to_source(surface, 0.0);
+    });
     double farthest = 0.0;
     for (const double d2 : farthest2) farthest = std::max(farthest, d2);
-    std::vector<double> back2(chunk_count(level0.triangles.size(), kChunk), 0.0);
-    parallel_for_each_chunk(level0.triangles.size(), kChunk,
-                            [&](std::size_t chunk, std::size_t begin, std::size_t end) {
-                              std::uint32_t place = kNoId;
-                              for (std::size_t t = begin; t < end; ++t) {
-                                const auto id = static_cast<std::uint32_t>(t);
-                                if (!surfaces_.has_points(level0, id)) continue;
-                                for (const auto& [b, c] : kCorners) {
-                                  const auto hit = tree_.find(level0.at(id, b, c), place, 0.0);
-                                  if (hit.triangle == kNoId) continue;
-                                  place = hit.triangle;
-                                  back2[chunk] = std::max(back2[chunk], hit.distance2);
-                                }
-                              }
-                            });
     for (const double d2 : back2) farthest = std::max(farthest, d2);
     return std::sqrt(farthest);
+  }
+
+  /// From points of the source to farther ones near to them.
+  [[nodiscard]] double climb_all(const Tree& tree, const FarPoints& list, double farthest2) const {
+    for (FarPoint far : list.list()) {
+      climb_near(source_, tree, far);
+      farthest2 = std::max(farthest2, far.distance2);
+    }
+    return farthest2;
   }
 
   /// Points of the group against the source. Squared, `farthest2` at least.
@@ -231,11 +235,7 @@ class PromiseMeter {
       }
     }
     look_between(tree, samples, farthest2, list);
-    for (FarPoint far : list.list()) {
-      climb_near(source_, tree, far);
-      farthest2 = std::max(farthest2, far.distance2);
-    }
-    return farthest2;
+    return climb_all(tree, list, farthest2);
   }
 
   /// Of a triangle of the source that reaches farther than the group is off, the samples that are left say little of
