@@ -41,6 +41,9 @@ class BoundedSearch {
   /// Nothing is left to be divided.
   [[nodiscard]] bool is_done() const { return parts_.empty() || !is_beyond(parts_.front().bound); }
 
+  /// No point of what is left is farther; 0 where nothing is left.
+  [[nodiscard]] double bound_of_rest() const { return is_done() ? 0.0 : parts_.front().bound; }
+
   /// The farthest.
   [[nodiscard]] const Found& found() const { return found_; }
 

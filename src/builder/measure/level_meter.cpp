@@ -164,6 +164,7 @@ void LevelMeter::merge(std::vector<Item>& items) {
       known(group).known = std::max(known(group).known, distance);
     }
     item.raised.clear();
+    known(item.group).open = std::max(known(item.group).open, item.open);
   }
 }
 
@@ -174,6 +175,7 @@ void LevelMeter::finish_groups(std::span<const Made> made) {
     const auto g = static_cast<std::uint32_t>(first_ + i);
     DagGroup& group = dag_.groups[g];
     if (group.is_terminal) return;
+    if (known(g).open > known(g).known) known(g).found = std::min(known(g).open, kMostOfOpen * known(g).known);
     group.deviation = known(g).found;
     group.error = std::max(known(g).floor, margin_ * known(g).found);
     attributes_.measure(group, outputs_[g], near[i]);

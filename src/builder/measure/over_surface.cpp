@@ -20,7 +20,7 @@ constexpr std::size_t kMostPiecesOfUnit = 48;
 /// Parts of the search for a triangle of several groups, where those before it in its chunk left so many.
 constexpr std::size_t kPartsOfShared = 256;
 /// Parts of one chunk: stacks of sheets have thousands of triangles that lie over many others.
-constexpr std::size_t kMostPartsOfChunk = 4096;
+constexpr std::size_t kMostPartsOfChunk = 16384;
 /// More than a distance in floats is off by.
 constexpr double kSlack = 1e-6;
 
@@ -163,6 +163,7 @@ void LevelMeter::check_units(const LevelSurface& surface, UnitChunk& chunk, std:
   }
   (void)search.run(std::min(kPartsPerTriangle * searched + extra_parts, kMostPartsOfChunk));
   if (search.found().distance > 0.0) chunk.raised.push_back({chunk.group, search.found().distance});
+  chunk.open = search.bound_of_rest();
 }
 
 }  // namespace meshlode::builder

@@ -136,6 +136,31 @@ TEST(BoundedSearch, StopsWhereItsEffortEnds) {
 }
 
 // Its middle lies on a small plate, its corners far beside it.
+TEST(BoundedSearch, BoundsWhatItDidNotComeTo) {
+  Random random(86);
+  int left = 0;
+  for (int round = 0; round < 40; ++round) {
+    const judge::Surface surface = lattice(random, 30, 4), one = lattice(random, 1, 4);
+    const SurfaceTree tree = tree_over(surface);
+    const Corners corners{one.positions[0], one.positions[1], one.positions[2]};
+    BoundedSearch search(tree, kTolerance, 0.0);
+    search.add(corners, TreeSlot());
+    search.run(static_cast<std::size_t>(round) % 8 * 2);
+    EXPECT_GE(kTolerance * std::max(search.found().distance, search.bound_of_rest()) + 1e-6,
+              farthest_of_points(surface, corners, 40))
+        << round;
+    if (search.is_done()) {
+      EXPECT_EQ(search.bound_of_rest(), 0.0);
+    } else {
+      ++left;
+      EXPECT_GT(search.bound_of_rest(), search.found().distance);
+    }
+    search.run(kWithoutEnd);
+    EXPECT_EQ(search.bound_of_rest(), 0.0);
+  }
+  EXPECT_GT(left, 10);
+}
+
 TEST(BoundedSearch, ATriangleIsNotWithinBecauseItsMiddleIs) {
   judge::Surface surface;
   surface.positions = {Vec3d(0.9, 0.9, 0.0), Vec3d(1.1, 0.9, 0.0), Vec3d(1.0, 1.1, 0.0)};
