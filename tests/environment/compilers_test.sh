@@ -20,7 +20,7 @@ compare() {
   rm -rf "$build"
   "$cmake" -S "$source" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_C_COMPILER="$2" -DCMAKE_CXX_COMPILER="$3" \
     -DCMAKE_CXX_FLAGS="$4" -DCMAKE_CXX_FLAGS_RELEASE=-DNDEBUG -DMESHLODE_TESTS=OFF -DMESHLODE_VULKAN=OFF -DMESHLODE_WASM=OFF \
-    -DCMAKE_UNITY_BUILD=ON -DMESHLODE_WERROR=OFF -DCMAKE_CXX_COMPILER_LAUNCHER="${LAUNCHER:-}" >"$work/log" 2>&1 &&
+    -DMESHLODE_UNITY=ON -DMESHLODE_WERROR=OFF -DCMAKE_CXX_COMPILER_LAUNCHER="${LAUNCHER:-}" >"$work/log" 2>&1 &&
     ninja -C "$build" meshlode_cli >"$work/log" 2>&1 || { tail -n 40 "$work/log"; echo "FAILED: $name does not build"; exit 1; }
   "$source/tests/cli/compare_compilers.sh" "$work/reference" "$build" || { echo "FAILED: $name"; failed=1; }
 }

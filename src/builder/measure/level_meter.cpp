@@ -175,9 +175,10 @@ void LevelMeter::finish_groups(std::span<const Made> made) {
     const auto g = static_cast<std::uint32_t>(first_ + i);
     DagGroup& group = dag_.groups[g];
     if (group.is_terminal) return;
-    if (known(g).open > known(g).known) known(g).found = std::min(known(g).open, kMostOfOpen * known(g).known);
-    group.deviation = known(g).found;
-    group.error = std::max(known(g).floor, margin_ * known(g).found);
+    const Known& k = known(g);
+    const double of_open = k.open > k.known ? std::min(k.open, kMostOfOpen * k.known) : 0.0;
+    group.deviation = k.found;
+    group.error = std::max(k.floor, margin_ * std::max(k.found, of_open));
     attributes_.measure(group, outputs_[g], near[i]);
   });
 }

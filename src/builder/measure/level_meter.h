@@ -47,7 +47,7 @@ class LevelMeter {
     double floor = 0.0;  ///< its error is no less
     double found = 0.0;  ///< the largest distance
     double known = 0.0;  ///< no smaller one matters
-    double open = 0.0;   ///< no point of what searches did not come to is farther
+    double open = 0.0;   ///< no point that its own searches did not come to is farther
   };
   struct Raise {
     std::uint32_t group;
@@ -216,12 +216,12 @@ constexpr std::uint8_t kSeen = 1, kOpen = 2;
 constexpr float kParallel = 0.95F;
 /// Searches go on to what is farther by this at least.
 constexpr double kTolerance = 1.002;
-/// Parts that searches may make: for each triangle that needs one, and spread over all of a level. With a quarter of
-/// those for a triangle twelve searches of the dragon and three of the bunny do not end, and random layers 960277 have
-/// a cut at 1.145.
+/// Parts that searches may make: for each triangle that needs one, also where it is of several groups, and spread over
+/// all of a level. With a quarter of those for a triangle and of those of a chunk, twelve searches of the dragon and
+/// three of the bunny do not end, and where what they left did not count, random layers 960277 had a cut at 1.145.
 constexpr std::size_t kPartsPerTriangle = 64, kPartsOfLevel = 4000;
-/// Where a search does not end, its bound counts as found, but no more than this share of what is known: the bounds of
-/// soups may be fifty times that.
+/// Where a search does not end, its bound counts towards the group's error, but no more than this share of what is
+/// known: the bounds of soups may be fifty times that.
 constexpr double kMostOfOpen = 1.25;
 /// A source of at most so many triangles costs little, and is looked at without shortcuts.
 constexpr std::size_t kFewSource = 30000;

@@ -19,7 +19,8 @@ constexpr float kFlatCosine = 0.9F;
 constexpr std::size_t kMostPiecesOfUnit = 48;
 /// Parts of the search for a triangle of several groups, where those before it in its chunk left so many.
 constexpr std::size_t kPartsOfShared = 256;
-/// Parts of one chunk: stacks of sheets have thousands of triangles that lie over many others.
+/// Parts of one chunk: stacks of sheets have thousands of triangles that lie over many others. As many as
+/// kPartsPerTriangle was measured with.
 constexpr std::size_t kMostPartsOfChunk = 16384;
 /// More than a distance in floats is off by.
 constexpr double kSlack = 1e-6;

@@ -130,21 +130,22 @@ class PromiseMeter {
             tree.find(source_.at(samples[i].triangle, samples[i].b, samples[i].c), place, quantization * quantization);
         if (hit.triangle == kNoId) continue;  // its distance is not a number
         samples[i].place = place = hit.triangle;
-        if (space_.is_flat())
+        farthest2[chunk] = std::max(farthest2[chunk], hit.distance2);
+        if (space_.is_flat() && hit.distance2 >= kLookFrom * kLookFrom * farthest2[chunk])
           list.add({hit.distance2, samples[i].triangle, double{samples[i].b}, double{samples[i].c}, hit.triangle});
       }
-      farthest2[chunk] = climb_all(tree, list, 0.0);
+      farthest2[chunk] = climb_all(tree, list, farthest2[chunk]);
     });
     for (const Sample& sample : samples) carried[cluster_of[sample.place]].push_back(sample);
     if (!space_.is_flat()) return quantization;
-    std::vector<double> back2(clusters.size(), 0.0);
+    double farthest = 0.0;
+    for (const double d2 : farthest2) farthest = std::max(farthest, d2);
+    std::vector<double> back2(clusters.size(), farthest);
     parallel_for_each_index(clusters.size(), 1, [&](std::size_t i) {
       Surface surface;
       surfaces_.add_cluster(dag_.clusters[clusters[i]], surface);
-      back2[i] = measure_to_source(surface, 0.0);
+      back2[i] = measure_to_source(surface, back2[i]);
     });
-    double farthest = 0.0;
-    for (const double d2 : farthest2) farthest = std::max(farthest, d2);
     for (const double d2 : back2) farthest = std::max(farthest, d2);
     return std::sqrt(farthest);
   }

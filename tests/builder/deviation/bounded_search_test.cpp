@@ -135,7 +135,6 @@ TEST(BoundedSearch, StopsWhereItsEffortEnds) {
   EXPECT_EQ(search.run(kWithoutEnd), 0U) << "and again";
 }
 
-// Its middle lies on a small plate, its corners far beside it.
 TEST(BoundedSearch, BoundsWhatItDidNotComeTo) {
   Random random(86);
   int left = 0;
@@ -161,6 +160,7 @@ TEST(BoundedSearch, BoundsWhatItDidNotComeTo) {
   EXPECT_GT(left, 10);
 }
 
+// Its middle lies on a small plate, its corners far beside it.
 TEST(BoundedSearch, ATriangleIsNotWithinBecauseItsMiddleIs) {
   judge::Surface surface;
   surface.positions = {Vec3d(0.9, 0.9, 0.0), Vec3d(1.1, 0.9, 0.0), Vec3d(1.0, 1.1, 0.0)};
