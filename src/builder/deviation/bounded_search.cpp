@@ -122,6 +122,10 @@ void BoundedSearch::look_at(Part& part) {
   if (!is_within(part)) push(part);
 }
 
+void BoundedSearch::know(double known) {
+  beyond_ = std::max(beyond_, margin_ * known);
+}
+
 std::size_t BoundedSearch::run(std::size_t parts) {
   std::size_t made = 0;
   while (!is_done() && made + 2 <= parts) {

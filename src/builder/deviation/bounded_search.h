@@ -36,6 +36,8 @@ class BoundedSearch {
   void add(const std::array<Vec3d, 3>& corners, TreeSlot place);
   /// The same, but run() looks at it, if its turn comes: no point of it is farther than `bound`.
   void add_later(const std::array<Vec3d, 3>& corners, TreeSlot place, double bound);
+  /// Nothing within `margin` times that is looked for any more.
+  void know(double known);
   /// Makes at most so many parts, and returns how many.
   std::size_t run(std::size_t parts);
   /// Nothing is left to be divided.

@@ -5,7 +5,8 @@
 //      the source,
 //   2. check_units: source triangles that pass from one triangle of the surface to another are laid over it (Overlay),
 //   3. check_made: so are triangles of the surface over the source, where it is not parallel, ends, or is not seen,
-//   4. wait_for_others: what a group stood for and is now near to another's part is held to cuts without that part.
+//   4. finish_searches: what searches left in 2 and 3 goes on where it may be farther than all that is known by then,
+//   5. wait_for_others: what a group stood for and is now near to another's part is held to cuts without that part.
 // Whatever is farther than what is known of a group so far is its new known distance; what is nearer is dismissed as
 // early as a bound allows.
 #pragma once
@@ -21,6 +22,7 @@
 #include <tuple>
 #include <vector>
 
+#include "builder/deviation/bounded_search.h"
 #include "builder/deviation/source_tree.h"
 #include "builder/lod_dag.h"
 #include "builder/measure/canonical_form.h"
@@ -47,7 +49,7 @@ class LevelMeter {
     double floor = 0.0;  ///< its error is no less
     double found = 0.0;  ///< the largest distance
     double known = 0.0;  ///< no smaller one matters
-    double open = 0.0;   ///< no point that its own searches did not come to is farther
+    double open = 0.0;   ///< no point that searches did not come to at all is farther
   };
   struct Raise {
     std::uint32_t group;
@@ -73,6 +75,11 @@ class LevelMeter {
       return std::tie(group, is_triangle, id, to) < std::tie(other.group, other.is_triangle, other.id, other.to);
     }
   };
+  /// A search that did not end by the parts that it had at first.
+  struct Left {
+    BoundedSearch search;
+    const OwnedUnit* shared = nullptr;  ///< what it looks at, where that is of several groups
+  };
   /// Units of one group that one turn looks after.
   struct UnitChunk {
     std::uint32_t group = 0;
@@ -81,7 +88,7 @@ class LevelMeter {
     std::vector<std::uint32_t> near_all;    ///< per unit: to this one
     std::vector<NearVertex> near;
     std::vector<Raise> raised;  ///< one of each group
-    double open = 0.0;          ///< bounds what its search did not come to
+    std::vector<Left> left;
     std::vector<Moved> moved;
   };
   /// A cluster that a group made.
@@ -90,7 +97,7 @@ class LevelMeter {
     std::uint32_t first_triangle = 0, triangle_count = 0;  ///< of the surface
     std::vector<TreeSlot> near;                            ///< per triangle: of the source
     std::vector<Raise> raised;
-    double open = 0.0;  ///< bounds what its search did not come to
+    std::vector<Left> left;
   };
   class Owners;
 
@@ -103,6 +110,9 @@ class LevelMeter {
   [[nodiscard]] std::vector<Made> made_clusters(const LevelSurface& surface) const;
   template <class Item>
   void merge(std::vector<Item>& items);
+  template <class Item>
+  void finish_searches(const LevelSurface& surface, std::vector<Item>& items);
+  void go_on(const LevelSurface& surface, std::uint32_t group, std::span<Left> left, std::vector<Raise>& raised) const;
   void finish_groups(std::span<const Made> made);
   void hand_on(const LevelSurface& surface, std::span<const UnitChunk> chunks);
 
@@ -116,7 +126,6 @@ class LevelMeter {
   // over_source.cpp: the surface against the source
   void ask_vertices(Made& made) const;
   void check_made(const LevelSurface& surface, Made& made) const;
-  [[nodiscard]] bool is_plain(const LevelSurface& surface, std::uint32_t triangle, TreeSlot near) const;
 
   // moved.cpp
   void list_moved(const LevelSurface& surface, const OwnedUnit& unit, const NearVertex* near, std::uint32_t near_all,
@@ -216,13 +225,9 @@ constexpr std::uint8_t kSeen = 1, kOpen = 2;
 constexpr float kParallel = 0.95F;
 /// Searches go on to what is farther by this at least.
 constexpr double kTolerance = 1.002;
-/// Parts that searches may make: for each triangle that needs one, also where it is of several groups, and spread over
-/// all of a level. With a quarter of those for a triangle and of those of a chunk, twelve searches of the dragon and
-/// three of the bunny do not end, and where what they left did not count, random layers 960277 had a cut at 1.145.
-constexpr std::size_t kPartsPerTriangle = 64, kPartsOfLevel = 4000;
-/// Where a search does not end, its bound counts towards the group's error, but no more than this share of what is
-/// known: the bounds of soups may be fifty times that.
-constexpr double kMostOfOpen = 1.25;
+/// Parts that searches may make at first: for each triangle that needs one, also where it is of several groups, and
+/// spread over all of a level.
+constexpr std::size_t kPartsPerTriangle = 16, kPartsOfLevel = 4000;
 /// A source of at most so many triangles costs little, and is looked at without shortcuts.
 constexpr std::size_t kFewSource = 30000;
 

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -16,6 +17,21 @@
 #include "format/grid.h"
 
 namespace meshlode::builder {
+
+/// Around points; at first around none.
+struct Box3d {
+  Vec3d low{std::numeric_limits<double>::infinity()}, high{-std::numeric_limits<double>::infinity()};
+
+  void add(const Vec3d& point) {
+    low = glm::min(low, point);
+    high = glm::max(high, point);
+  }
+  /// Along each axis they are so near.
+  [[nodiscard]] bool is_within(const Box3d& other, double distance) const {
+    return glm::all(glm::lessThanEqual(low, other.high + distance)) &&
+           glm::all(glm::lessThanEqual(other.low, high + distance));
+  }
+};
 
 struct LevelSurface {
   using Triangle = std::array<std::uint32_t, 3>;
@@ -43,6 +59,7 @@ struct LevelSurface {
   std::vector<Triangle> neighbor;      ///< LinkedSurface::neighbor
   std::vector<Vec3f> normal;           ///< per triangle, of unit length or 0
   std::vector<std::uint32_t> start;    ///< per group of the level and one more: where its triangles begin
+  std::vector<Box3d> box;              ///< per group of the level, around its triangles
   SurfaceTree tree;
   std::vector<TreeSlot> slot;  ///< per triangle
 

@@ -15,7 +15,9 @@ namespace meshlode::builder {
 
 namespace {
 
-constexpr std::size_t kPartsOfMoved = 64;
+/// Parts of a triangle's search against one surface, and against what a group and another one's children are together.
+/// Of 7,000 of the second kind in random scenes none made more than 516.
+constexpr std::size_t kPartsOfMoved = 64, kPartsOfTogether = 4096;
 
 }  // namespace
 
@@ -46,8 +48,8 @@ void LevelMeter::list_moved(const LevelSurface& surface, const OwnedUnit& unit, 
   }
 }
 
-/// How far something moved is from a tree; 0: not farther than `enough`. Of triangles that are, some distance beyond
-/// will do, unless all is to be known.
+/// How far something moved is from a tree at most; 0: not farther than `enough`. Of triangles that may be, some
+/// distance beyond will do, unless all is to be known.
 double LevelMeter::distance_from(const SurfaceTree& tree, const Moved& m, double enough, bool is_all) const {
   if (tree.size() == 0) return std::numeric_limits<double>::infinity();
   if (!m.is_triangle) {
@@ -57,10 +59,11 @@ double LevelMeter::distance_from(const SurfaceTree& tree, const Moved& m, double
   }
   BoundedSearch search(tree, kTolerance, enough);
   search.add(source_.impl().corners(m.id), TreeSlot());
-  for (std::size_t parts = 0; parts < kPartsOfMoved && !search.is_done(); parts += search.run(2)) {
+  const std::size_t most = is_all ? kPartsOfTogether : kPartsOfMoved;
+  for (std::size_t parts = 0; parts < most && !search.is_done(); parts += search.run(2)) {
     if (!is_all && search.found().distance > 0.0) break;
   }
-  return search.found().distance;
+  return std::max(search.found().distance, search.bound_of_rest());
 }
 
 /// Of one group: how far they are from what it made.
@@ -68,7 +71,12 @@ void LevelMeter::measure_from_own(const LevelSurface& surface, std::span<Moved> 
   const std::uint32_t g = moved.front().group, first = surface.start[g - first_], end = surface.start[g - first_ + 1];
   SurfaceTree own;
   own.build({surface.positions, std::span(surface.triangles).subspan(first, end - first)});
-  for (Moved& m : moved) m.distance = distance_from(own, m, enough(g), false);
+  const Moved* last = nullptr;
+  for (Moved& m : moved) {
+    const bool is_last = last != nullptr && last->id == m.id && last->is_triangle == m.is_triangle;
+    m.distance = is_last ? last->distance : distance_from(own, m, enough(g), false);
+    last = &m;
+  }
 }
 
 /// To one other group, those that are too far from what their own made: how far they are from that and what the other

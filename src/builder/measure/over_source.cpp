@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "builder/deviation/bounded_search.h"
@@ -29,10 +30,6 @@ constexpr std::size_t kMostPiecesOfMade = 1024;
 /// lie over a hundred steps of a staircase: with a sixteenth a sheared plane that floats make into stairs has a cut at
 /// 1.11 of its error, and random scene 110424 with all of its appearance promised one at 1.04.
 constexpr std::size_t kPartsOfMade = 4096;
-/// And for all of a cluster: without, one search of fandisk does not end, nor does one of random scene 940970, where a
-/// triangle has a thousand times the length of what it lies between. Where what it left did not count, a cut was
-/// at 1.184.
-constexpr std::size_t kPartsOfCluster = 32768;
 
 /// A part of a triangle is divided while it is wider than so many times what is known, and while that is more than this
 /// share of the source triangle below: one source triangle is then near to all of a part soon, and the many beside it
@@ -92,14 +89,6 @@ void LevelMeter::ask_vertices(Made& made) const {
   }
 }
 
-/// The source near to a triangle of the surface is parallel to it and ends nowhere near.
-bool LevelMeter::is_plain(const LevelSurface& surface, std::uint32_t triangle, TreeSlot near) const {
-  const std::uint32_t t = source_.impl().tree.triangle_at(near);
-  if (glm::dot(source_normal_[t], surface.normal[triangle]) < kParallel) return false;
-  const std::array<std::uint32_t, 3> corner = source_.impl().vertices(t);
-  return std::none_of(corner.begin(), corner.end(), [&](std::uint32_t v) { return units_.is_border(v); });
-}
-
 void LevelMeter::check_made(const LevelSurface& surface, Made& made) const {
   const SourceTree::Impl& impl = source_.impl();
   const SurfaceTree& source = impl.tree;
@@ -119,7 +108,7 @@ void LevelMeter::check_made(const LevelSurface& surface, Made& made) const {
     const std::uint32_t k = made.first_triangle + i;
     if (!made.near[i].is_valid()) continue;
     const std::uint8_t seen = seen_[k].load(std::memory_order_relaxed);
-    if (!is_small && (seen == kSeen || (seen == 0 && is_plain(surface, k, made.near[i])))) continue;
+    if (!is_small && seen == kSeen) continue;
     const auto [a, b, c] = surface.corners(k);
     if (!is_small) {
       double most = 0.0;
@@ -160,9 +149,9 @@ void LevelMeter::check_made(const LevelSurface& surface, Made& made) const {
     }
     searched += is_searched ? 1 : 0;
   }
-  if (searched > 0) (void)search.run(kPartsOfMade * searched + kPartsOfCluster);
+  (void)search.run(kPartsOfMade * searched);
   raise(search.found().distance);
-  made.open = search.bound_of_rest();
+  if (!search.is_done()) made.left.push_back({std::move(search), nullptr});
 }
 
 }  // namespace meshlode::builder

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The source against a level's surface.
+#include <utility>
+
 #include "builder/deviation/bounded_search.h"
 #include "builder/measure/level_meter.h"
 
@@ -19,9 +21,8 @@ constexpr float kFlatCosine = 0.9F;
 constexpr std::size_t kMostPiecesOfUnit = 48;
 /// Parts of the search for a triangle of several groups, where those before it in its chunk left so many.
 constexpr std::size_t kPartsOfShared = 256;
-/// Parts of one chunk: stacks of sheets have thousands of triangles that lie over many others. As many as
-/// kPartsPerTriangle was measured with.
-constexpr std::size_t kMostPartsOfChunk = 16384;
+/// Parts of one chunk: stacks of sheets have thousands of triangles that lie over many others.
+constexpr std::size_t kMostPartsOfChunk = 4096;
 /// More than a distance in floats is off by.
 constexpr double kSlack = 1e-6;
 
@@ -131,14 +132,25 @@ void LevelMeter::check_units(const LevelSurface& surface, UnitChunk& chunk, std:
       if (static_cast<double>(nearest) + (1.0 + kSlack) * longest_edge(corners) <= within) continue;
       if (!is_small && !is_at_border && is_flat(surface, corners, normal, k, within)) continue;
       const bool is_within = overlay.is_within(corners, k[0], within);
+      const auto is_near_to = [&](GroupId to) {
+        if (!owners.is_one() || !to.is_valid() || to.value == chunk.group) return;
+        chunk.moved.push_back({chunk.group, to.value, t.id, true});
+      };
       for (const std::uint32_t below : overlay.below()) {
         if (!is_small) mark_seen(surface, below, normal, is_at_border);
-        const GroupId to = maker(surface, below);
-        if (owners.is_one() && to.is_valid() && to.value != chunk.group) {
-          chunk.moved.push_back({chunk.group, to.value, t.id, true});
-        }
+        is_near_to(maker(surface, below));
       }
       if (is_within) continue;
+      for (const Overlay::Far& far : overlay.far()) is_near_to(maker(surface, far.nearest));
+      if (!overlay.rest().empty()) {  // a search does not say what it is near to
+        Box3d around;
+        for (const Overlay::Rest& rest : overlay.rest()) {
+          for (const Vec3d& x : rest.corners) around.add(x);
+        }
+        for (std::uint32_t g = first_; g < end_; ++g) {
+          if (surface.box[g - first_].is_within(around, within)) is_near_to(GroupId(g));
+        }
+      }
       for (const Overlay::Far& far : overlay.far()) {
         owners.raise(surface, far.distance, far.nearest);
         // Seen from the triangle below, the source may be farther.
@@ -160,11 +172,12 @@ void LevelMeter::check_units(const LevelSurface& surface, UnitChunk& chunk, std:
       left_to_shared -= shared.run(left_to_shared);
       const BoundedSearch::Found& found = shared.found();
       if (found.distance > 0.0) owners.raise(surface, found.distance, surface.tree.triangle_at(found.place));
+      if (!shared.is_done()) chunk.left.push_back({std::move(shared), &chunk.units[i]});
     }
   }
   (void)search.run(std::min(kPartsPerTriangle * searched + extra_parts, kMostPartsOfChunk));
   if (search.found().distance > 0.0) chunk.raised.push_back({chunk.group, search.found().distance});
-  chunk.open = search.bound_of_rest();
+  if (!search.is_done()) chunk.left.push_back({std::move(search), nullptr});
 }
 
 }  // namespace meshlode::builder

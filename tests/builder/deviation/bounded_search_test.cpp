@@ -135,6 +135,30 @@ TEST(BoundedSearch, StopsWhereItsEffortEnds) {
   EXPECT_EQ(search.run(kWithoutEnd), 0U) << "and again";
 }
 
+TEST(BoundedSearch, WhatIsKnownMeanwhileEndsIt) {
+  Random random(87);
+  const judge::Surface surface = lattice(random, 60, 6);
+  const SurfaceTree tree = tree_over(surface);
+  const Corners corners{Vec3d(0.1, 0.2, 0.3), Vec3d(5.1, 0.4, 0.9), Vec3d(1.1, 4.9, 4.7)};
+  BoundedSearch search(tree, kTolerance, 0.01), all(tree, kTolerance, 0.01);
+  search.add(corners, TreeSlot());
+  all.add(corners, TreeSlot());
+  all.run(kWithoutEnd);
+  search.run(4);
+  ASSERT_FALSE(search.is_done());
+  search.know(0.005);
+  EXPECT_FALSE(search.is_done()) << "less than is known";
+  search.know(search.bound_of_rest());
+  EXPECT_TRUE(search.is_done());
+  EXPECT_EQ(search.run(kWithoutEnd), 0U);
+
+  BoundedSearch nearly(tree, kTolerance, 0.01);
+  nearly.add(corners, TreeSlot());
+  nearly.know(0.9 * all.found().distance);
+  nearly.run(kWithoutEnd);
+  EXPECT_NEAR(nearly.found().distance, all.found().distance, (kTolerance - 1.0) * all.found().distance);
+}
+
 TEST(BoundedSearch, BoundsWhatItDidNotComeTo) {
   Random random(86);
   int left = 0;

@@ -110,5 +110,37 @@ TEST(MeasureLevels, AGroupIsTrueBesideWhatAnotherOneHasNotReplacedYet) {
   }
 }
 
+/// The same, where one triangle of the source lies over more ridges than an overlay passes, and the right group's part
+/// is near to it in a gap between two of them alone.
+TEST(MeasureLevels, AGroupIsTrueWhereASearchLooksBesideItForAnotherOne) {
+  constexpr int kRidges = 128;
+  constexpr double kStep = 1.0 / 1024, kWidth = 2.0 / kRidges, kHeight = 18 * kStep;
+  for (int gap = 3; gap < kRidges; gap += 20) {
+    HandMade made;
+    made.add_group(1, true);
+    Soup ridges;
+    for (int i = 0; i < kRidges; ++i) {
+      const double x = i * kWidth;
+      const Vec3d a(x, 0.0, kHeight), b(x + kWidth, 0.0, kHeight), c(x + 0.5 * kWidth, 1.0, 0.5 * kHeight);
+      if (i != gap && i != gap + 1) ridges.push_back({a, b, c});
+      if (ridges.size() < 64) continue;
+      made.add_cluster(1, GroupId(1U), ridges);
+      ridges.clear();
+    }
+    made.add_cluster(1, GroupId(1U), ridges + strip(-1, -0.5, 20 * kStep));  // known: 20 steps
+    made.add_cluster(1, GroupId(2U), strip(gap * kWidth, (gap + 2) * kWidth, 4 * kStep) + strip(2, 3, 1));
+    made.add_group(0, false);
+    made.add_cluster(0, GroupId(), strip(0, 2, 0) + strip(-1, -0.5, 0));
+    made.add_group(0, false);
+    made.add_cluster(0, GroupId(), strip(2, 3, 0));
+    measure(made);
+    const double left = made.dag.groups[1].error;
+    EXPECT_NEAR(made.dag.groups[2].error, 1.0, 1e-9);
+    EXPECT_GT(left, 22 * kStep);
+    EXPECT_LE(test::sampled_distance(test::source_of(made.mesh), test::cut_of(made.mesh, made.dag, left), 400),
+              left * 1.002);  // searches go on to what is so much farther
+  }
+}
+
 }  // namespace
 }  // namespace meshlode::builder
