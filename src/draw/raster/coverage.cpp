@@ -14,6 +14,9 @@ namespace {
 
 constexpr std::int32_t kBandRows = 16;  ///< rows of a band; a band belongs to one task
 
+/// So many columns are looked at one by one in the time that the divisions of columns_within() take.
+constexpr std::int32_t kFewColumns = 32;
+
 __extension__ typedef unsigned __int128 Wide;
 
 /// E(p) of the edge from a to b, positive on the inner side of a triangle of positive area, as a plane over the pixels.
@@ -60,6 +63,22 @@ PixelRange rows_of_band(PixelRange rows, std::int32_t band) {
   return {std::max(rows.first, band * kBandRows), std::min(rows.last, band * kBandRows + kBandRows - 1)};
 }
 
+/// Of `columns` of a row those within all three edges, of which `e` are the values at the first column. Most of what is
+/// around a long thin triangle lies beside it.
+PixelRange columns_within(const Edge (&edges)[3], const std::int64_t (&e)[3], PixelRange columns) {
+  std::int64_t first = 0, last = columns.last - columns.first;
+  for (int k = 0; k < 3; ++k) {
+    const std::int64_t value = e[k] + edges[k].bias, step = edges[k].step_x;
+    if (step < 0) {
+      last = std::min(last, value < 0 ? -1 : value / -step);
+    } else if (value < 0) {
+      first = step == 0 ? last + 1 : std::max(first, (-value + step - 1) / step);
+    }
+  }
+  return {columns.first + static_cast<std::int32_t>(std::min(first, last + 1)),
+          columns.first + static_cast<std::int32_t>(last)};
+}
+
 void draw_triangle(const ScreenSoup& soup, const ScreenTriangle& t, std::int32_t band, VisibilityBuffer& buffer) {
   const auto [low_x, high_x] = std::minmax({t.v[0].x, t.v[1].x, t.v[2].x});
   const auto [low_y, high_y] = std::minmax({t.v[0].y, t.v[1].y, t.v[2].y});
@@ -71,7 +90,12 @@ void draw_triangle(const ScreenSoup& soup, const ScreenTriangle& t, std::int32_t
   for (std::int32_t y = rows.first; y <= rows.last; ++y) {
     std::int64_t e[3] = {edges[0].at(columns.first, y), edges[1].at(columns.first, y), edges[2].at(columns.first, y)};
     const std::size_t row = static_cast<std::size_t>(y) * buffer.width;
-    for (std::int32_t x = columns.first; x <= columns.last; ++x) {
+    PixelRange within = columns;
+    if (columns.last - columns.first > kFewColumns) {
+      within = columns_within(edges, e, columns);
+      for (int k = 0; k < 3; ++k) e[k] += edges[k].step_x * (within.first - columns.first);
+    }
+    for (std::int32_t x = within.first; x <= within.last; ++x) {
       // The sign bit of the union is set iff one of them is negative.
       if (((e[0] + edges[0].bias) | (e[1] + edges[1].bias) | (e[2] + edges[2].bias)) >= 0) {
         put_pixel(soup, buffer, row + static_cast<std::size_t>(x), interpolate_depth(t, e, area), t.key);

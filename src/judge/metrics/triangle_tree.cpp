@@ -358,7 +358,7 @@ inline double TriangleTree::distance2_at(const Vec3d& point, std::uint32_t place
   return distance2_to_triangle(point, a, b, c);
 }
 
-NearestPoint TriangleTree::search(const Vec3d& point, std::uint32_t hint, NearestPoint best, bool is_any_enough) const {
+NearestPoint TriangleTree::search(const Vec3d& point, std::uint32_t hint, NearestPoint best, double enough) const {
   if (nodes_.empty()) return best;
   const Vec3d at = to_frame(point);
   const double scale2 = scale_ * scale_;
@@ -378,7 +378,7 @@ NearestPoint TriangleTree::search(const Vec3d& point, std::uint32_t hint, Neares
   std::size_t size = 0;
   stack[size++] = {0, distance2_to_box(nodes_[0].box, at)};
   while (size > 0) {
-    if (is_any_enough && best.triangle != kNoId) return best;
+    if (best.triangle != kNoId && best.distance2 <= enough) return best;
     const Entry entry = stack[--size];
     if (entry.distance2 >= limit) continue;
     const Node& node = nodes_[entry.node];

@@ -40,12 +40,16 @@ class TriangleTree {
   /// The nearest triangle. `hint` names a triangle that is probably near, and changes the time taken alone; it may be
   /// kNoId. Infinite for an empty tree. Safe from several threads.
   [[nodiscard]] NearestPoint nearest(const Vec3d& point, std::uint32_t hint = kNoId) const {
-    return search(point, hint, NearestPoint(), false);
+    return search(point, hint, NearestPoint(), 0.0);
+  }
+  /// Some triangle within a squared distance, or where there is none the nearest.
+  [[nodiscard]] NearestPoint near_enough(double distance2, const Vec3d& point, std::uint32_t hint) const {
+    return search(point, hint, NearestPoint(), distance2);
   }
   /// Some triangle that is nearer than a squared distance, or kNoId and that distance where there is none, but for the
   /// rounding of boxes.
   [[nodiscard]] NearestPoint any_within(double distance2, const Vec3d& point, std::uint32_t hint) const {
-    return search(point, hint, {distance2, kNoId}, true);
+    return search(point, hint, {distance2, kNoId}, distance2);
   }
   /// Triangles of the surface, those that are near each other one after another; one in several leaves several times.
   [[nodiscard]] std::span<const std::uint32_t> triangles_in_order() const { return triangle_; }
@@ -53,9 +57,8 @@ class TriangleTree {
   void find_within(const Vec3d& point, double distance2, std::vector<NearestPoint>& found) const;
 
  private:
-  /// The nearest triangle that is nearer than `best`, or any.
-  [[nodiscard]] NearestPoint search(const Vec3d& point, std::uint32_t hint, NearestPoint best,
-                                    bool is_any_enough) const;
+  /// The nearest triangle that is nearer than `best`, or any that is, within `enough`; both squared.
+  [[nodiscard]] NearestPoint search(const Vec3d& point, std::uint32_t hint, NearestPoint best, double enough) const;
   /// In the tree's frame: floats of about unit size.
   struct Box {
     std::array<float, 3> low, high;

@@ -149,6 +149,45 @@ TEST(Raster, FansCoverEveryPixelExactlyOnce) {
   }
 }
 
+/// Its rows are asked for their first and last column, those of small triangles for each: by edge functions at every
+/// centre here, of needles across the picture and beyond it, with level and upright sides among them.
+TEST(Raster, LongTrianglesCoverWhatEachCentreSays) {
+  constexpr ImageSize kWide{300, 40};
+  test::Random random(20261129);
+  int drawn = 0;
+  for (int round = 0; round < 3000; ++round) {
+    const bool on_centres = round % 3 == 0;
+    const auto place = [&](double x, double y) {
+      return on_centres ? pixel_vertex(std::floor(x) + 0.5, std::floor(y) + 0.5) : pixel_vertex(x, y);
+    };
+    const double beside = round % 5 == 0 ? 2000.0 : 60.0;
+    ScreenVertex a = place(random.range(-beside, 20), random.range(-beside / 10, 50));
+    ScreenVertex b = place(random.range(200, 300 + beside), random.range(-10, 40 + beside / 10));
+    ScreenVertex c = place(b.x / 256.0 + random.range(-30, 30), b.y / 256.0 + random.range(-3, 3));
+    if (round % 7 == 0) b.y = a.y;
+    if (round % 11 == 0) c.x = b.x;
+    const ScreenSoup soup = one_triangle(a, b, c, Culling::kNone, kWide);
+    if (doubled_area(a, b, c) < 0) std::swap(b, c);
+    const VisibilityBuffer buffer = draw(soup, kWide);
+    const auto is_inside = [](const ScreenVertex& from, const ScreenVertex& to, std::int64_t x, std::int64_t y) {
+      const std::int64_t dx = std::int64_t{to.x} - from.x, dy = std::int64_t{to.y} - from.y;
+      const std::int64_t side = dx * (y - from.y) - dy * (x - from.x);
+      return side > 0 || (side == 0 && (dy < 0 || (dy == 0 && dx > 0)));  // a left edge, or a top one
+    };
+    for (std::uint32_t y = 0; y < kWide.height; ++y) {
+      for (std::uint32_t x = 0; x < kWide.width; ++x) {
+        const std::int64_t px = std::int64_t{x} * 256 + 128, py = std::int64_t{y} * 256 + 128;
+        const bool is_covered =
+            doubled_area(a, b, c) != 0 && is_inside(a, b, px, py) && is_inside(b, c, px, py) && is_inside(c, a, px, py);
+        drawn += is_covered ? 1 : 0;
+        ASSERT_EQ(buffer.item[y * kWide.width + x] != VisibilityBuffer::kNothing, is_covered)
+            << "round " << round << " pixel " << x << "," << y;
+      }
+    }
+  }
+  EXPECT_GT(drawn, 100000);
+}
+
 TEST(Raster, GridsOfTrianglesCoverThePictureExactlyOnce) {
   test::Random random(99);
   for (int round = 0; round < 20; ++round) {

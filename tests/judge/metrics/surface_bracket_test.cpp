@@ -177,6 +177,19 @@ TEST(SurfaceBracket, StopsAtWhatIsEnoughAndSaysNothingOfWhatIsBelow) {
   EXPECT_LT(found.splits, 100U);
 }
 
+/// What is met near a vertex is some triangle that is near enough: no distance of the surfaces.
+TEST(SurfaceBracket, SaysNoDistanceThatIsNotTheSurfaces) {
+  RandomSource random(4711);
+  for (const double enough : {1e-6, 0.02, 0.2, 2.0}) {
+    const Surface a = make_soup(random, 40, Vec3d(0.0)), b = make_soup(random, 400, Vec3d(0.0));
+    const double truth = bracket(a, b).upper;
+    const Bracket found = bracket(a, b, {.enough = enough, .budget = 1000000});
+    EXPECT_LE(found.lower, truth * (1.0 + 1e-9)) << enough;
+    EXPECT_GE(found.upper, truth * (1.0 - 1e-9)) << enough;
+    EXPECT_LE(bracket(b, b, {.enough = enough, .budget = 1000000}).lower, 1e-9) << enough;
+  }
+}
+
 // A corner at a distance whose square is not that of its root: near enough as a distance, and not as a square.
 TEST(SurfaceBracket, GoesOnWhereACornerIsExactlyAsFarAsIsEnough) {
   ASSERT_LT(std::sqrt(3.0) * std::sqrt(3.0), 3.0);
