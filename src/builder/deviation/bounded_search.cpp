@@ -96,7 +96,7 @@ Highest highest_of(const LinearBounds& bounds) {
 }  // namespace
 
 BoundedSearch::BoundedSearch(const SurfaceTree& tree, double margin, double known)
-    : tree_(tree), margin_(margin), beyond_(std::max(margin * known, kSmallest / tree.scale())) {}
+    : tree_(&tree), margin_(margin), beyond_(std::max(margin * known, kSmallest / tree.scale())) {}
 
 void BoundedSearch::add(const std::array<Vec3d, 3>& corners, TreeSlot place) {
   if (is_near_throughout(corners, place)) return;
@@ -162,27 +162,27 @@ bool BoundedSearch::is_beyond(double distance) const {
 
 bool BoundedSearch::is_near_throughout(const std::array<Vec3d, 3>& corners, TreeSlot place) const {
   if (!place.is_valid()) return false;
-  const std::array<Vec3f, 3> at{tree_.to_frame(corners[0]), tree_.to_frame(corners[1]), tree_.to_frame(corners[2])};
-  const SurfaceTree::Hit hit = tree_.look_around(at, place);
-  if (!(hit.distance2 <= tree_.squared_in_frame(beyond_))) return false;
+  const std::array<Vec3f, 3> at{tree_->to_frame(corners[0]), tree_->to_frame(corners[1]), tree_->to_frame(corners[2])};
+  const SurfaceTree::Hit hit = tree_->look_around(at, place);
+  if (!(hit.distance2 <= tree_->squared_in_frame(beyond_))) return false;
   // Floats are off by a share of the extent, and what is beyond may be a small one.
-  const TriangleDistance distance(tree_.corners_at(hit.slot));
+  const TriangleDistance distance(tree_->corners_at(hit.slot));
   return std::all_of(corners.begin(), corners.end(),
                      [&](const Vec3d& p) { return distance.squared_to(p) <= beyond_ * beyond_; });
 }
 
 SurfaceTree::Hit BoundedSearch::find_near(const Corner& corner, float enough) const {
-  const Vec3f at = tree_.to_frame(corner.at);
+  const Vec3f at = tree_->to_frame(corner.at);
   SurfaceTree::Hit hit;
-  if (corner.near.is_valid()) hit = tree_.look_around(at, corner.near, hit);
-  return hit.distance2 <= enough ? hit : tree_.find_nearest(at, hit, enough);
+  if (corner.near.is_valid()) hit = tree_->look_around(at, corner.near, hit);
+  return hit.distance2 <= enough ? hit : tree_->find_nearest(at, hit, enough);
 }
 
 bool BoundedSearch::measure(Corner& corner) {
-  const SurfaceTree::Hit hit = find_near(corner, tree_.squared_in_frame(kEnough * beyond_));
+  const SurfaceTree::Hit hit = find_near(corner, tree_->squared_in_frame(kEnough * beyond_));
   if (!hit.slot.is_valid()) return false;  // farther than floats reach: not on any real mesh
   corner.near = hit.slot;
-  const double distance = std::sqrt(tree_.distance2_at(corner.at, hit.slot));
+  const double distance = std::sqrt(tree_->distance2_at(corner.at, hit.slot));
   if (distance > beyond_) {
     found_ = {distance, corner.at, hit.slot};
     beyond_ = margin_ * distance;
@@ -194,7 +194,7 @@ bool BoundedSearch::is_within(Part& part) {
   LinearBounds bounds;
   const auto bound_by = [&](TreeSlot slot) {
     if (!slot.is_valid() || bounds.has(slot)) return false;
-    const TriangleDistance distance(tree_.corners_at(slot));
+    const TriangleDistance distance(tree_->corners_at(slot));
     for (std::size_t k = 0; k < 3; ++k) {
       bounds.at_corner[bounds.count][k] = std::sqrt(distance.squared_to(part.corner[k].at));
     }
@@ -228,7 +228,7 @@ BoundedSearch::Division BoundedSearch::choose_division(const Part& part) const {
   if (part.peak_edge == Part::kInside) return longest;
   const Corner &from = part.corner[part.peak_edge], &to = part.corner[(part.peak_edge + 1U) % 3];
   const auto how_much_farther = [&](const Corner& corner, TreeSlot other) {
-    return std::sqrt(tree_.distance2_at(corner.at, other)) - std::sqrt(tree_.distance2_at(corner.at, corner.near));
+    return std::sqrt(tree_->distance2_at(corner.at, other)) - std::sqrt(tree_->distance2_at(corner.at, corner.near));
   };
   const double at_from = how_much_farther(from, to.near), at_to = how_much_farther(to, from.near);
   const double share = at_from / (at_from + at_to);

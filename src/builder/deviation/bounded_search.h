@@ -88,7 +88,7 @@ class BoundedSearch {
   [[nodiscard]] Division choose_division(const Part& part) const;
   void push(Part& part);
 
-  const SurfaceTree& tree_;
+  const SurfaceTree* tree_;
   double margin_, beyond_;  ///< no nearer point is of use
   Found found_;
   std::vector<Part> parts_;  ///< a heap

@@ -5,8 +5,9 @@
 //      the source,
 //   2. check_units: source triangles that pass from one triangle of the surface to another are laid over it (Overlay),
 //   3. check_made: so are triangles of the surface over the source, where it is not parallel, ends, or is not seen,
-//   4. finish_searches: what searches left in 2 and 3 goes on where it may be farther than all that is known by then,
-//   5. wait_for_others: what a group stood for and is now near to another's part is held to cuts without that part.
+//      after each of 2 and 3 finish_searches: what searches left goes on where it may be farther than all that is
+//      known,
+//   4. wait_for_others: what a group stood for and is now near to another's part is held to cuts without that part.
 // Whatever is farther than what is known of a group so far is its new known distance; what is nearer is dismissed as
 // early as a bound allows.
 #pragma once
@@ -49,7 +50,7 @@ class LevelMeter {
     double floor = 0.0;  ///< its error is no less
     double found = 0.0;  ///< the largest distance
     double known = 0.0;  ///< no smaller one matters
-    double open = 0.0;   ///< no point that searches did not come to at all is farther
+    double open = 0.0;   ///< what searches left in the end is no farther; 0: they left nothing
   };
   struct Raise {
     std::uint32_t group;
@@ -78,7 +79,15 @@ class LevelMeter {
   /// A search that did not end by the parts that it had at first.
   struct Left {
     BoundedSearch search;
+    std::uint32_t group;
     const OwnedUnit* shared = nullptr;  ///< what it looks at, where that is of several groups
+    std::vector<Raise> raised;
+  };
+  /// A triangle of a group's own units that a search looked at, which does not say what it is near to.
+  struct Searched {
+    std::uint32_t id;  ///< of the source
+    Box3d box;         ///< around what it looked at
+    double bound;      ///< no point of that is farther from what the overlay says
   };
   /// Units of one group that one turn looks after.
   struct UnitChunk {
@@ -87,9 +96,10 @@ class LevelMeter {
     std::vector<std::uint32_t> first_near;  ///< per unit: into near; kNoId: all of it is near to one triangle
     std::vector<std::uint32_t> near_all;    ///< per unit: to this one
     std::vector<NearVertex> near;
-    std::vector<Raise> raised;  ///< one of each group
+    std::vector<Raise> raised;
     std::vector<Left> left;
     std::vector<Moved> moved;
+    std::vector<Searched> searched;
   };
   /// A cluster that a group made.
   struct Made {
@@ -98,6 +108,11 @@ class LevelMeter {
     std::vector<TreeSlot> near;                            ///< per triangle: of the source
     std::vector<Raise> raised;
     std::vector<Left> left;
+  };
+  /// What one group made of the surface.
+  struct PartBox {
+    std::uint32_t group;
+    Box3d box;
   };
   class Owners;
 
@@ -112,7 +127,10 @@ class LevelMeter {
   void merge(std::vector<Item>& items);
   template <class Item>
   void finish_searches(const LevelSurface& surface, std::vector<Item>& items);
-  void go_on(const LevelSurface& surface, std::uint32_t group, std::span<Left> left, std::vector<Raise>& raised) const;
+  /// False: it is done.
+  [[nodiscard]] bool is_open(Left& left) const;
+  /// Returns the parts that it made.
+  std::size_t go_on(const LevelSurface& surface, Left& left) const;
   void finish_groups(std::span<const Made> made);
   void hand_on(const LevelSurface& surface, std::span<const UnitChunk> chunks);
 
@@ -134,6 +152,8 @@ class LevelMeter {
   void measure_from_own(const LevelSurface& surface, std::span<Moved> moved) const;
   void measure_from_both(const LevelSurface& surface, std::span<Moved> moved) const;
   void measure_all_moved(const LevelSurface& surface, std::span<Moved> moved) const;
+  [[nodiscard]] std::vector<PartBox> part_boxes(const LevelSurface& surface) const;
+  void list_searched(std::span<const PartBox> parts, UnitChunk& chunk) const;
   void raise_by(std::span<const Moved> moved);
   void wait_for_others(const LevelSurface& surface, std::span<UnitChunk> chunks);
 

@@ -29,12 +29,6 @@ LevelSurface::LevelSurface(const LodDag& dag, const format::PositionGrid& grid, 
   normal.resize(triangles.size());
   parallel_for_each_index(triangles.size(), kLoopGrain,
                           [&](std::size_t k) { normal[k] = unit_normal(corners(static_cast<std::uint32_t>(k))); });
-  box.resize(end_group - first_group);
-  for (std::size_t i = 0; i < box.size(); ++i) {
-    for (std::uint32_t k = start[i]; k < start[i + 1]; ++k) {
-      for (const Vec3d& x : corners(k)) box[i].add(x);
-    }
-  }
   tree.build({positions, triangles});
   slot.resize(triangles.size());
   parallel_for_each_index(triangles.size(), kLoopGrain,

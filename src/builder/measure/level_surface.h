@@ -59,7 +59,6 @@ struct LevelSurface {
   std::vector<Triangle> neighbor;      ///< LinkedSurface::neighbor
   std::vector<Vec3f> normal;           ///< per triangle, of unit length or 0
   std::vector<std::uint32_t> start;    ///< per group of the level and one more: where its triangles begin
-  std::vector<Box3d> box;              ///< per group of the level, around its triangles
   SurfaceTree tree;
   std::vector<TreeSlot> slot;  ///< per triangle
 

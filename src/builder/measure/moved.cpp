@@ -59,10 +59,10 @@ double LevelMeter::distance_from(const SurfaceTree& tree, const Moved& m, double
   }
   BoundedSearch search(tree, kTolerance, enough);
   search.add(source_.impl().corners(m.id), TreeSlot());
-  const std::size_t most = is_all ? kPartsOfTogether : kPartsOfMoved;
-  for (std::size_t parts = 0; parts < most && !search.is_done(); parts += search.run(2)) {
-    if (!is_all && search.found().distance > 0.0) break;
+  for (std::size_t parts = 0; parts < kPartsOfMoved && search.found().distance == 0.0 && !search.is_done();) {
+    parts += search.run(2);
   }
+  if (is_all) (void)search.run(kPartsOfTogether);
   return std::max(search.found().distance, search.bound_of_rest());
 }
 
@@ -115,10 +115,46 @@ void LevelMeter::measure_from_both(const LevelSurface& surface, std::span<Moved>
   }
 }
 
+/// By the groups that made parts of the surface, in their order.
+std::vector<LevelMeter::PartBox> LevelMeter::part_boxes(const LevelSurface& surface) const {
+  std::vector<PartBox> parts;
+  std::vector<std::uint32_t> part_of(dag_.groups.size(), kNoId);
+  for (std::uint32_t k = 0; k < surface.triangles.size(); ++k) {
+    const GroupId made = maker(surface, k);
+    if (!made.is_valid()) continue;
+    std::uint32_t& part = part_of[made.value];
+    if (part == kNoId) {
+      part = static_cast<std::uint32_t>(parts.size());
+      parts.push_back({made.value, {}});
+    }
+    for (const Vec3d& x : surface.corners(k)) parts[part].box.add(x);
+  }
+  return parts;
+}
+
+/// What a search looked at may be near to any part within the group's error; unless that is enough for the overlay to
+/// say what it is near to.
+void LevelMeter::list_searched(std::span<const PartBox> parts, UnitChunk& chunk) const {
+  const double within = enough(chunk.group);
+  for (const Searched& searched : chunk.searched) {
+    if (searched.bound <= within) continue;
+    for (const PartBox& part : parts) {
+      if (part.group != chunk.group && part.box.is_within(searched.box, within)) {
+        chunk.moved.push_back({chunk.group, part.group, searched.id, true});
+      }
+    }
+  }
+}
+
 /// A group's error is what keeps such a cut true; at most the other group's, so that there is no such cut. What is
 /// raised may come to be larger than that of others that it was smaller than: so again, until nothing is.
 void LevelMeter::wait_for_others(const LevelSurface& surface, std::span<UnitChunk> chunks) {
   std::vector<Moved> moved;
+  const auto has_searched = [](const UnitChunk& chunk) { return !chunk.searched.empty(); };
+  if (std::any_of(chunks.begin(), chunks.end(), has_searched)) {
+    const std::vector<PartBox> parts = part_boxes(surface);
+    parallel_for_each_index(chunks.size(), 1, [&](std::size_t i) { list_searched(parts, chunks[i]); });
+  }
   std::size_t count = 0;
   for (const UnitChunk& chunk : chunks) count += chunk.moved.size();
   moved.reserve(count);

@@ -142,15 +142,6 @@ void LevelMeter::check_units(const LevelSurface& surface, UnitChunk& chunk, std:
       }
       if (is_within) continue;
       for (const Overlay::Far& far : overlay.far()) is_near_to(maker(surface, far.nearest));
-      if (!overlay.rest().empty()) {  // a search does not say what it is near to
-        Box3d around;
-        for (const Overlay::Rest& rest : overlay.rest()) {
-          for (const Vec3d& x : rest.corners) around.add(x);
-        }
-        for (std::uint32_t g = first_; g < end_; ++g) {
-          if (surface.box[g - first_].is_within(around, within)) is_near_to(GroupId(g));
-        }
-      }
       for (const Overlay::Far& far : overlay.far()) {
         owners.raise(surface, far.distance, far.nearest);
         // Seen from the triangle below, the source may be farther.
@@ -161,8 +152,13 @@ void LevelMeter::check_units(const LevelSurface& surface, UnitChunk& chunk, std:
       }
       if (owners.is_one()) {
         ++searched;
-        for (const Overlay::Rest& rest : overlay.rest())
+        Searched at{t.id, {}, 0.0};
+        for (const Overlay::Rest& rest : overlay.rest()) {
           search.add_later(rest.corners, surface.slot[rest.near], rest.bound);
+          for (const Vec3d& x : rest.corners) at.box.add(x);
+          at.bound = std::max(at.bound, rest.bound);
+        }
+        if (!overlay.rest().empty()) chunk.searched.push_back(at);
         continue;
       }
       BoundedSearch shared(surface.tree, kTolerance, owners.known());
@@ -172,12 +168,12 @@ void LevelMeter::check_units(const LevelSurface& surface, UnitChunk& chunk, std:
       left_to_shared -= shared.run(left_to_shared);
       const BoundedSearch::Found& found = shared.found();
       if (found.distance > 0.0) owners.raise(surface, found.distance, surface.tree.triangle_at(found.place));
-      if (!shared.is_done()) chunk.left.push_back({std::move(shared), &chunk.units[i]});
+      if (!shared.is_done()) chunk.left.push_back({std::move(shared), chunk.group, &chunk.units[i], {}});
     }
   }
   (void)search.run(std::min(kPartsPerTriangle * searched + extra_parts, kMostPartsOfChunk));
   if (search.found().distance > 0.0) chunk.raised.push_back({chunk.group, search.found().distance});
-  if (!search.is_done()) chunk.left.push_back({std::move(search), nullptr});
+  if (!search.is_done()) chunk.left.push_back({std::move(search), chunk.group, nullptr, {}});
 }
 
 }  // namespace meshlode::builder

@@ -22,7 +22,8 @@ constexpr int kMostSteps = 40;
 constexpr std::size_t kMostCandidates = 8;  // triangles that a piece may be near to
 // Where large triangles cross, a piece comes to have more candidates than this, and a search in the tree looks at
 // thousands of triangles for one that the pieces beside it have met already. Three random scenes of such soups take 24,
-// 40 and 60 s for 277, 597 and 140 with 32 of them, 25, 37 and 67 s with 16.
+// 40 and 60 s for 277, 597 and 140 with 32 of them, 25, 37 and 67 s with 16. With 2, 4 and 6 candidates the first takes
+// 17, 19 and 21 s on another day, the bunny 8.4, 8.5 and 8.0.
 constexpr std::size_t kFewCandidates = 4, kMet = 32;
 
 /// A part of a triangle.
@@ -295,8 +296,8 @@ class BracketSearch {
 };
 
 /// A triangle so near to a vertex, as a share of what is near enough, will do: where all of a part is smaller than
-/// floats of the whole tell apart, the boxes of the tree do not say which is nearest. Random scene 940040 takes 53
-/// processor seconds so, and more than 120 with none; a quarter is no quicker.
+/// floats of the whole tell apart, the boxes of the tree do not say which is nearest. Random scene 940040 takes 51
+/// processor seconds so, and more than 120 with 0; a quarter is no quicker.
 constexpr double kNearVertex = 0.0625;
 
 /// Triangles near to all vertices that the triangles use.

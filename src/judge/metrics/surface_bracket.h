@@ -30,7 +30,7 @@ struct NearParts {
 };
 
 struct Bracket {
-  double lower = 0.0;           ///< a distance that was met
+  double lower = 0.0;           ///< a distance that was met; 0: none but small ones
   double upper = 0.0;           ///< no point is farther
   Vec3d worst{0.0};             ///< where `lower` was met
   std::uint64_t undecided = 0;  ///< pieces that the budget did not reach, or not to their end

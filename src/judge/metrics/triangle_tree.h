@@ -42,7 +42,7 @@ class TriangleTree {
   [[nodiscard]] NearestPoint nearest(const Vec3d& point, std::uint32_t hint = kNoId) const {
     return search(point, hint, NearestPoint(), 0.0);
   }
-  /// Some triangle within a squared distance, or where there is none the nearest.
+  /// Some triangle within a squared distance, which one by the hint, or where there is none the nearest.
   [[nodiscard]] NearestPoint near_enough(double distance2, const Vec3d& point, std::uint32_t hint) const {
     return search(point, hint, NearestPoint(), distance2);
   }

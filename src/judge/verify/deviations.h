@@ -43,7 +43,7 @@ struct CutBracket {
   MeshId mesh;
   double threshold = 0.0, stored = 0.0;
   double rounding = 0.0;        ///< of the positions that were measured
-  double lower = 0.0;           ///< a distance that was met
+  double lower = 0.0;           ///< a distance that was met; 0: none but small ones
   double upper = 0.0;           ///< nothing is farther
   Vec3d worst{0.0};             ///< where `lower` was met
   bool is_of_source = true;     ///< `worst` is a point of the source, and else of the cut

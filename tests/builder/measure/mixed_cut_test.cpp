@@ -110,8 +110,8 @@ TEST(MeasureLevels, AGroupIsTrueBesideWhatAnotherOneHasNotReplacedYet) {
   }
 }
 
-/// The same, where one triangle of the source lies over more ridges than an overlay passes, and the right group's part
-/// is near to it in a gap between two of them alone.
+/// The same, where one triangle of the source lies over many ridges that share no edges, so that an overlay leaves it
+/// to a search, and the right group's part is near to it in a gap between two of them alone.
 TEST(MeasureLevels, AGroupIsTrueWhereASearchLooksBesideItForAnotherOne) {
   constexpr int kRidges = 128;
   constexpr double kStep = 1.0 / 1024, kWidth = 2.0 / kRidges, kHeight = 18 * kStep;

@@ -150,7 +150,7 @@ TEST(Raster, FansCoverEveryPixelExactlyOnce) {
 }
 
 /// Its rows are asked for their first and last column, those of small triangles for each: by edge functions at every
-/// centre here, of needles across the picture and beyond it, with level and upright sides among them.
+/// centre here, of needles across the picture and up to the guard band, with level and upright sides among them.
 TEST(Raster, LongTrianglesCoverWhatEachCentreSays) {
   constexpr ImageSize kWide{300, 40};
   test::Random random(20261129);
@@ -160,12 +160,16 @@ TEST(Raster, LongTrianglesCoverWhatEachCentreSays) {
     const auto place = [&](double x, double y) {
       return on_centres ? pixel_vertex(std::floor(x) + 0.5, std::floor(y) + 0.5) : pixel_vertex(x, y);
     };
-    const double beside = round % 5 == 0 ? 2000.0 : 60.0;
+    const double beside = round % 10 == 0 ? 1e6 : round % 5 == 0 ? 2000.0 : 60.0;
     ScreenVertex a = place(random.range(-beside, 20), random.range(-beside / 10, 50));
     ScreenVertex b = place(random.range(200, 300 + beside), random.range(-10, 40 + beside / 10));
     ScreenVertex c = place(b.x / 256.0 + random.range(-30, 30), b.y / 256.0 + random.range(-3, 3));
     if (round % 7 == 0) b.y = a.y;
     if (round % 11 == 0) c.x = b.x;
+    const auto depth_at = [](std::int64_t x, std::int64_t y) {
+      return static_cast<std::uint32_t>(2000000000 + 4 * x + 3 * y);
+    };
+    for (ScreenVertex* v : {&a, &b, &c}) v->depth = depth_at(v->x, v->y);
     const ScreenSoup soup = one_triangle(a, b, c, Culling::kNone, kWide);
     if (doubled_area(a, b, c) < 0) std::swap(b, c);
     const VisibilityBuffer buffer = draw(soup, kWide);
@@ -182,6 +186,8 @@ TEST(Raster, LongTrianglesCoverWhatEachCentreSays) {
         drawn += is_covered ? 1 : 0;
         ASSERT_EQ(buffer.item[y * kWide.width + x] != VisibilityBuffer::kNothing, is_covered)
             << "round " << round << " pixel " << x << "," << y;
+        if (!is_covered) continue;
+        ASSERT_EQ(buffer.depth[y * kWide.width + x], depth_at(px, py)) << "round " << round;
       }
     }
   }
