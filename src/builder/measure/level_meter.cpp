@@ -12,11 +12,9 @@ namespace {
 
 /// Units that one turn looks after: enough for hints to lead from one to the next.
 constexpr std::size_t kUnitsOfChunk = 64;
-/// What a search left goes on by so many parts a round, and so many rounds; all that are left of a level by so many
-/// parts, and so many rounds of each. In 5,051 random scenes searches of 1,192 levels were left: one level needed 68
-/// rounds, one 50, the others at most 13; random scene 940970, where a triangle has a thousand times the length of what
-/// it lies between, needs 84. Of 150,000 large triangles in 20 sheets 23 searches are open in the end.
-constexpr std::size_t kPartsOfRound = 4096, kMostRounds = 256, kPartsLeftOfLevel = 1U << 20U, kRoundsOfEach = 4;
+/// What a search left goes on by so many parts a round; all that are left of a level by so many parts, and so many
+/// rounds of each.
+constexpr std::size_t kPartsOfRound = 4096, kPartsLeftOfLevel = 1U << 20U, kRoundsOfEach = 4;
 /// Of the mesh's diagonal: what arithmetic alone makes of nothing.
 constexpr double kNoise = 1e-12;
 
@@ -30,9 +28,11 @@ std::vector<std::uint32_t> level0_clusters(CanonicalForm& form) {
 
 }  // namespace
 
-LevelMeter::LevelMeter(const PreparedMesh& mesh, SourceTree source, CanonicalForm& form, double margin, LodDag& dag)
+LevelMeter::LevelMeter(const PreparedMesh& mesh, SourceTree source, CanonicalForm& form, double margin,
+                       std::size_t rounds, LodDag& dag)
     : mesh_(mesh),
       margin_(margin),
+      rounds_(rounds),
       form_(form),
       dag_(dag),
       source_(std::move(source)),
@@ -88,8 +88,7 @@ void LevelMeter::measure_level(std::uint32_t first_group, std::uint32_t end_grou
   parallel_for_each_index(made.size(), 1, [&](std::size_t i) { ask_vertices(made[i]); });
   merge(chunks);
   merge(made);
-  parallel_for_each_index(chunks.size(), 1,
-                          [&](std::size_t i) { check_units(surface, chunks[i], kPartsOfLevel / chunks.size()); });
+  parallel_for_each_index(chunks.size(), 1, [&](std::size_t i) { check_units(surface, chunks[i]); });
   finish_searches(surface, chunks);
   surface.free_search();
   link_source();
@@ -204,7 +203,7 @@ void LevelMeter::finish_searches(const LevelSurface& surface, std::vector<Item>&
   };
   for (Item& item : items) take_open(item.left);
   std::size_t left_to_all = kPartsLeftOfLevel + kRoundsOfEach * kPartsOfRound * open.size();
-  for (std::size_t round = 0; round < kMostRounds && !open.empty() && left_to_all > 0; ++round) {
+  for (std::size_t round = 0; round < rounds_ && !open.empty() && left_to_all > 0; ++round) {
     std::vector<std::size_t> made(open.size());
     parallel_for_each_index(open.size(), 1, [&](std::size_t i) { made[i] = go_on(surface, open[i]); });
     for (const std::size_t parts : made) left_to_all -= std::min(left_to_all, parts);

@@ -4,9 +4,9 @@
 //   1. ask_units, ask_vertices: the vertices of the source are asked for the surface, new vertices of the surface for
 //      the source,
 //   2. check_units: source triangles that pass from one triangle of the surface to another are laid over it (Overlay),
-//   3. check_made: so are triangles of the surface over the source, where it is not parallel, ends, or is not seen,
-//      after each of 2 and 3 finish_searches: what searches left goes on where it may be farther than all that is
-//      known,
+//   3. check_made: so are triangles of the surface over the source, where it is not parallel, ends, or is not seen;
+//      after each of 2 and 3 finish_searches: a search that has not ended goes on where it may be farther than what is
+//      known by then,
 //   4. wait_for_others: what a group stood for and is now near to another's part is held to cuts without that part.
 // Whatever is farther than what is known of a group so far is its new known distance; what is nearer is dismissed as
 // early as a bound allows.
@@ -38,8 +38,10 @@ namespace meshlode::builder {
 class LevelMeter {
  public:
   /// `source` is the tree over the mesh's exact triangles; `form` is the DAG's, whose triangles are in its order. What
-  /// it is given must outlive it, but for level0_of_source, which is freed.
-  LevelMeter(const PreparedMesh& mesh, SourceTree source, CanonicalForm& form, double margin, LodDag& dag);
+  /// it is given must outlive it, but for level0_of_source, which is freed. What searches have not ended in so many
+  /// rounds counts by its bound.
+  LevelMeter(const PreparedMesh& mesh, SourceTree source, CanonicalForm& form, double margin, std::size_t rounds,
+             LodDag& dag);
 
   /// All groups of a level; finer ones are measured.
   void measure_level(std::uint32_t first_group, std::uint32_t end_group);
@@ -83,12 +85,6 @@ class LevelMeter {
     const OwnedUnit* shared = nullptr;  ///< what it looks at, where that is of several groups
     std::vector<Raise> raised;
   };
-  /// A triangle of a group's own units that a search looked at, which does not say what it is near to.
-  struct Searched {
-    std::uint32_t id;  ///< of the source
-    Box3d box;         ///< around what it looked at
-    double bound;      ///< no point of that is farther from what the overlay says
-  };
   /// Units of one group that one turn looks after.
   struct UnitChunk {
     std::uint32_t group = 0;
@@ -99,7 +95,7 @@ class LevelMeter {
     std::vector<Raise> raised;
     std::vector<Left> left;
     std::vector<Moved> moved;
-    std::vector<Searched> searched;
+    std::vector<Moved> searched;  ///< a search does not say to what; not farther than this from what the overlay says
   };
   /// A cluster that a group made.
   struct Made {
@@ -127,7 +123,7 @@ class LevelMeter {
   void merge(std::vector<Item>& items);
   template <class Item>
   void finish_searches(const LevelSurface& surface, std::vector<Item>& items);
-  /// False: it is done.
+  /// Tells it what is known by now. False: it is done.
   [[nodiscard]] bool is_open(Left& left) const;
   /// Returns the parts that it made.
   std::size_t go_on(const LevelSurface& surface, Left& left) const;
@@ -136,7 +132,7 @@ class LevelMeter {
 
   // over_surface.cpp: the source against the surface
   void ask_units(const LevelSurface& surface, UnitChunk& chunk) const;
-  void check_units(const LevelSurface& surface, UnitChunk& chunk, std::size_t extra_parts);
+  void check_units(const LevelSurface& surface, UnitChunk& chunk);
   void mark_seen(const LevelSurface& surface, std::uint32_t triangle, const Vec3f& normal, bool is_border);
   [[nodiscard]] bool is_flat(const LevelSurface& surface, const TriangleCorners& corners, const Vec3f& normal,
                              const std::array<std::uint32_t, 3>& near, double within) const;
@@ -153,7 +149,7 @@ class LevelMeter {
   void measure_from_both(const LevelSurface& surface, std::span<Moved> moved) const;
   void measure_all_moved(const LevelSurface& surface, std::span<Moved> moved) const;
   [[nodiscard]] std::vector<PartBox> part_boxes(const LevelSurface& surface) const;
-  void list_searched(std::span<const PartBox> parts, UnitChunk& chunk) const;
+  [[nodiscard]] std::vector<Moved> list_searched(const LevelSurface& surface, std::span<UnitChunk> chunks) const;
   void raise_by(std::span<const Moved> moved);
   void wait_for_others(const LevelSurface& surface, std::span<UnitChunk> chunks);
 
@@ -169,6 +165,7 @@ class LevelMeter {
 
   const PreparedMesh& mesh_;
   double margin_;
+  std::size_t rounds_;
   const CanonicalForm& form_;
   LodDag& dag_;
   SourceTree source_;
@@ -245,9 +242,8 @@ constexpr std::uint8_t kSeen = 1, kOpen = 2;
 constexpr float kParallel = 0.95F;
 /// Searches go on to what is farther by this at least.
 constexpr double kTolerance = 1.002;
-/// Parts that searches may make at first: for each triangle that needs one, also where it is of several groups, and
-/// spread over all of a level.
-constexpr std::size_t kPartsPerTriangle = 16, kPartsOfLevel = 4000;
+/// Parts that a search may make at first, for each triangle that needs one.
+constexpr std::size_t kPartsPerTriangle = 4;
 /// A source of at most so many triangles costs little, and is looked at without shortcuts.
 constexpr std::size_t kFewSource = 30000;
 

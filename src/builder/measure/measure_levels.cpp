@@ -7,8 +7,9 @@
 
 namespace meshlode::builder {
 
-void measure_levels(const PreparedMesh& mesh, SourceTree source, CanonicalForm& form, double margin, LodDag& dag) {
-  LevelMeter meter(mesh, std::move(source), form, margin, dag);
+void measure_levels(const PreparedMesh& mesh, SourceTree source, CanonicalForm& form, double margin, LodDag& dag,
+                    std::size_t rounds) {
+  LevelMeter meter(mesh, std::move(source), form, margin, rounds, dag);
   for (std::size_t end = dag.groups.size(); end > 0;) {
     std::size_t begin = end - 1;
     while (begin > 0 && dag.groups[begin - 1].level == dag.groups[begin].level) --begin;

@@ -19,6 +19,18 @@ namespace {
 /// Of 7,000 of the second kind in random scenes none made more than 516.
 constexpr std::size_t kPartsOfMoved = 64, kPartsOfTogether = 4096;
 
+/// In parallel, those one after another with the same value of a member.
+template <class Item, class Turn>
+void for_each_run(std::span<Item> all, std::uint32_t Item::*key, const Turn& turn) {
+  std::vector<std::size_t> start;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (i == 0 || all[i].*key != all[i - 1].*key) start.push_back(i);
+  }
+  start.push_back(all.size());
+  parallel_for_each_index(start.size() - 1, 1,
+                          [&](std::size_t i) { turn(all.subspan(start[i], start[i + 1] - start[i])); });
+}
+
 }  // namespace
 
 /// `near`: of the unit's vertices; nullptr: all are near to `near_all`.
@@ -132,30 +144,37 @@ std::vector<LevelMeter::PartBox> LevelMeter::part_boxes(const LevelSurface& surf
   return parts;
 }
 
-/// What a search looked at may be near to any part within the group's error; unless that is enough for the overlay to
-/// say what it is near to.
-void LevelMeter::list_searched(std::span<const PartBox> parts, UnitChunk& chunk) const {
-  const double within = enough(chunk.group);
-  for (const Searched& searched : chunk.searched) {
-    if (searched.bound <= within) continue;
+/// What a search looked at may be near to any part within the group's error: unless that is enough for the overlay to
+/// say what it is near to, or for what the group itself made.
+std::vector<LevelMeter::Moved> LevelMeter::list_searched(const LevelSurface& surface,
+                                                         std::span<UnitChunk> chunks) const {
+  std::vector<Moved> searched, moved;
+  for (UnitChunk& chunk : chunks) {
+    for (const Moved& m : chunk.searched) {
+      if (m.distance > enough(m.group)) searched.push_back(m);
+    }
+    release(chunk.searched);
+  }
+  if (searched.empty()) return moved;
+  for_each_run(std::span(searched), &Moved::group, [&](std::span<Moved> run) { measure_from_own(surface, run); });
+  const std::vector<PartBox> parts = part_boxes(surface);
+  for (const Moved& m : searched) {
+    if (m.distance == 0.0) continue;
+    Box3d box;
+    for (const Vec3d& x : source_.impl().corners(m.id)) box.add(x);
     for (const PartBox& part : parts) {
-      if (part.group != chunk.group && part.box.is_within(searched.box, within)) {
-        chunk.moved.push_back({chunk.group, part.group, searched.id, true});
-      }
+      if (part.group == m.group || !part.box.is_within(box, enough(m.group))) continue;
+      moved.push_back({m.group, part.group, m.id, true});
     }
   }
+  return moved;
 }
 
 /// A group's error is what keeps such a cut true; at most the other group's, so that there is no such cut. What is
 /// raised may come to be larger than that of others that it was smaller than: so again, until nothing is.
 void LevelMeter::wait_for_others(const LevelSurface& surface, std::span<UnitChunk> chunks) {
-  std::vector<Moved> moved;
-  const auto has_searched = [](const UnitChunk& chunk) { return !chunk.searched.empty(); };
-  if (std::any_of(chunks.begin(), chunks.end(), has_searched)) {
-    const std::vector<PartBox> parts = part_boxes(surface);
-    parallel_for_each_index(chunks.size(), 1, [&](std::size_t i) { list_searched(parts, chunks[i]); });
-  }
-  std::size_t count = 0;
+  std::vector<Moved> moved = list_searched(surface, chunks);
+  std::size_t count = moved.size();
   for (const UnitChunk& chunk : chunks) count += chunk.moved.size();
   moved.reserve(count);
   for (UnitChunk& chunk : chunks) {
@@ -176,15 +195,6 @@ void LevelMeter::wait_for_others(const LevelSurface& surface, std::span<UnitChun
 }
 
 void LevelMeter::measure_all_moved(const LevelSurface& surface, std::span<Moved> moved) const {
-  const auto for_each_run = [](std::span<Moved> all, std::uint32_t Moved::*key, const auto& turn) {
-    std::vector<std::size_t> start;
-    for (std::size_t i = 0; i < all.size(); ++i) {
-      if (i == 0 || all[i].*key != all[i - 1].*key) start.push_back(i);
-    }
-    start.push_back(all.size());
-    parallel_for_each_index(start.size() - 1, 1,
-                            [&](std::size_t i) { turn(all.subspan(start[i], start[i + 1] - start[i])); });
-  };
   for_each_run(moved, &Moved::group, [&](std::span<Moved> of_one) { measure_from_own(surface, of_one); });
   const auto far = std::stable_partition(moved.begin(), moved.end(), [](const Moved& m) { return m.distance == 0.0; });
   std::stable_sort(far, moved.end(), [](const Moved& a, const Moved& b) { return a.to < b.to; });

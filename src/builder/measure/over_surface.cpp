@@ -19,10 +19,6 @@ constexpr double kFlat = 0.4;
 constexpr float kFlatCosine = 0.9F;
 /// A source triangle that lies over more of the surface is left to a search in bounds.
 constexpr std::size_t kMostPiecesOfUnit = 48;
-/// Parts of the search for a triangle of several groups, where those before it in its chunk left so many.
-constexpr std::size_t kPartsOfShared = 256;
-/// Parts of one chunk: stacks of sheets have thousands of triangles that lie over many others.
-constexpr std::size_t kMostPartsOfChunk = 4096;
 /// More than a distance in floats is off by.
 constexpr double kSlack = 1e-6;
 
@@ -102,13 +98,13 @@ bool LevelMeter::is_flat(const LevelSurface& surface, const TriangleCorners& cor
   return true;
 }
 
-void LevelMeter::check_units(const LevelSurface& surface, UnitChunk& chunk, std::size_t extra_parts) {
+void LevelMeter::check_units(const LevelSurface& surface, UnitChunk& chunk) {
   const SourceTree::Impl& source = source_.impl();
   const bool is_small = source.triangles.size() <= kFewSource;
   const LinkedSurface linked = surface.linked();
   Overlay overlay(linked, kMostPiecesOfUnit);
   BoundedSearch search(surface.tree, kTolerance, known(chunk.group).known);
-  std::size_t searched = 0, left_to_shared = kPartsOfShared;
+  std::size_t searched = 0;
   for (std::size_t i = 0; i < chunk.first_near.size(); ++i) {
     if (chunk.first_near[i] == kNoId) continue;
     const SourceUnits::Unit& unit = units_.units()[chunk.units[i].unit];
@@ -152,26 +148,25 @@ void LevelMeter::check_units(const LevelSurface& surface, UnitChunk& chunk, std:
       }
       if (owners.is_one()) {
         ++searched;
-        Searched at{t.id, {}, 0.0};
+        double bound = 0.0;
         for (const Overlay::Rest& rest : overlay.rest()) {
           search.add_later(rest.corners, surface.slot[rest.near], rest.bound);
-          for (const Vec3d& x : rest.corners) at.box.add(x);
-          at.bound = std::max(at.bound, rest.bound);
+          bound = std::max(bound, rest.bound);
         }
-        if (!overlay.rest().empty()) chunk.searched.push_back(at);
+        if (bound > 0.0) chunk.searched.push_back({chunk.group, kNoId, t.id, true, bound});
         continue;
       }
       BoundedSearch shared(surface.tree, kTolerance, owners.known());
-      for (const Overlay::Rest& rest : overlay.rest())
+      for (const Overlay::Rest& rest : overlay.rest()) {
         shared.add_later(rest.corners, surface.slot[rest.near], rest.bound);
-      left_to_shared = std::min(left_to_shared + kPartsPerTriangle, kPartsOfShared);
-      left_to_shared -= shared.run(left_to_shared);
+      }
+      (void)shared.run(kPartsPerTriangle);
       const BoundedSearch::Found& found = shared.found();
       if (found.distance > 0.0) owners.raise(surface, found.distance, surface.tree.triangle_at(found.place));
       if (!shared.is_done()) chunk.left.push_back({std::move(shared), chunk.group, &chunk.units[i], {}});
     }
   }
-  (void)search.run(std::min(kPartsPerTriangle * searched + extra_parts, kMostPartsOfChunk));
+  (void)search.run(kPartsPerTriangle * searched);
   if (search.found().distance > 0.0) chunk.raised.push_back({chunk.group, search.found().distance});
   if (!search.is_done()) chunk.left.push_back({std::move(search), chunk.group, nullptr, {}});
 }

@@ -30,11 +30,12 @@ HandMade one_group(const Soup& before, const Soup& after) {
   made.add_cluster(0, GroupId(), before);
   return made;
 }
-void measure(HandMade& made) {
+void measure(HandMade& made, std::size_t rounds = kMostRounds) {
   Result<CanonicalForm> form = canonical_form(made.mesh, made.dag);
   ASSERT_TRUE(form) << form.error().message();
   made.dag.triangles = form->triangles;
-  measure_levels(made.mesh, SourceTree(made.mesh.exact_positions, made.mesh.exact_triangles), *form, 1.0, made.dag);
+  measure_levels(made.mesh, SourceTree(made.mesh.exact_positions, made.mesh.exact_triangles), *form, 1.0, made.dag,
+                 rounds);
 }
 double error_of(HandMade made) {
   measure(made);
@@ -110,19 +111,46 @@ TEST(MeasureLevels, AGroupIsTrueBesideWhatAnotherOneHasNotReplacedYet) {
   }
 }
 
-/// The same, where one triangle of the source lies over many ridges that share no edges, so that an overlay leaves it
-/// to a search, and the right group's part is near to it in a gap between two of them alone.
+constexpr int kRidges = 128;
+constexpr double kStep = 1.0 / 1024, kWidth = 2.0 / kRidges;
+
+/// Over a strip of length 2, sloped so that it is lowest at one end. They share no edges, so that an overlay leaves
+/// the triangles of the strip to a search.
+TriangleCorners ridge(int i, double height) {
+  const double x = i * kWidth;
+  return {Vec3d(x, 0.0, height), Vec3d(x + kWidth, 0.0, height), Vec3d(x + 0.5 * kWidth, 1.0, 0.5 * height)};
+}
+
+TEST(MeasureLevels, WhatNoSearchHasEndedCountsByItsBound) {
+  HandMade made;
+  made.add_group(1, true);
+  for (int first = 0; first < kRidges; first += 64) {
+    Soup ridges;
+    for (int i = first; i < first + 64; ++i) {
+      if (i < 70 || i >= 90) ridges.push_back(ridge(i, 18 * kStep));  // in the gap the strip is far from all of them
+    }
+    made.add_cluster(1, GroupId(1U), ridges);
+  }
+  made.add_group(0, false);
+  made.add_cluster(0, GroupId(), strip(0, 2, 0));
+  HandMade ended = made;
+  measure(ended);
+  measure(made, 0);
+  const DagGroup &all = ended.dag.groups[1], &none = made.dag.groups[1];
+  EXPECT_DOUBLE_EQ(all.error, all.deviation);
+  EXPECT_LT(none.deviation, all.deviation);
+  EXPECT_GT(none.error, all.error);
+}
+
+/// As in the test before the last, where one triangle of the source lies over many ridges, and the right group's part
+/// is near to it in a gap between two of them alone.
 TEST(MeasureLevels, AGroupIsTrueWhereASearchLooksBesideItForAnotherOne) {
-  constexpr int kRidges = 128;
-  constexpr double kStep = 1.0 / 1024, kWidth = 2.0 / kRidges, kHeight = 18 * kStep;
   for (int gap = 3; gap < kRidges; gap += 20) {
     HandMade made;
     made.add_group(1, true);
     Soup ridges;
     for (int i = 0; i < kRidges; ++i) {
-      const double x = i * kWidth;
-      const Vec3d a(x, 0.0, kHeight), b(x + kWidth, 0.0, kHeight), c(x + 0.5 * kWidth, 1.0, 0.5 * kHeight);
-      if (i != gap && i != gap + 1) ridges.push_back({a, b, c});
+      if (i != gap && i != gap + 1) ridges.push_back(ridge(i, 18 * kStep));
       if (ridges.size() < 64) continue;
       made.add_cluster(1, GroupId(1U), ridges);
       ridges.clear();
