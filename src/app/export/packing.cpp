@@ -48,26 +48,23 @@ void FrameOfPositions::add(const format::MeshRecord& record, std::span<const Cut
   const format::PositionGrid grid{record.grid.log2, record.grid.mantissa};
   for (const CutPrimitive& primitive : primitives) {
     for (std::uint32_t i = 0; i < primitive.vertices.vertex_count; ++i) {
-      const Vec3d p = origin + grid.decode(primitive.vertices.position(i));
-      low_ = is_empty_ ? p : glm::min(low_, p);
-      high_ = is_empty_ ? p : glm::max(high_, p);
-      step_ = is_empty_ ? grid.step() : std::min(step_, grid.step());
-      is_empty_ = false;
+      step_ = box_.is_empty() ? grid.step() : std::min(step_, grid.step());
+      box_.add(origin + grid.decode(primitive.vertices.position(i)));
     }
   }
 }
 
 QuantizedFrame FrameOfPositions::frame(double least_step) const {
-  const Vec3d size = high_ - low_;
+  const Vec3d size = box_.size();
   if (!(step_ > 0.0) || !std::isfinite(std::max({size.x, size.y, size.z}))) return {};
-  QuantizedFrame frame{low_, step_};
+  QuantizedFrame frame{box_.low, step_};
   const auto is_too_fine = [&] {
-    const Vec3d reach = (high_ - frame.origin) / frame.step;
+    const Vec3d reach = (box_.high - frame.origin) / frame.step;
     return frame.step < least_step || std::max({reach.x, reach.y, reach.z}) > kMostShort;
   };
   while (is_too_fine()) {
     frame.step *= 2.0;
-    frame.origin = glm::floor(low_ / frame.step) * frame.step;  // positions that meshes share are rounded alike
+    frame.origin = glm::floor(box_.low / frame.step) * frame.step;  // positions that meshes share are rounded alike
   }
   return frame;
 }

@@ -12,6 +12,7 @@
 #include <meshlode/format.h>
 
 #include "app/export/cut_geometry.h"
+#include "base/box.h"
 #include "base/vec.h"
 
 namespace meshlode::app {
@@ -50,8 +51,7 @@ class FrameOfPositions {
   [[nodiscard]] double grid_step() const { return step_; }
 
  private:
-  bool is_empty_ = true;
-  Vec3d low_{0.0}, high_{0.0};
+  Box3d box_;
   double step_ = 0.0;  ///< the finest of the meshes' grids
 };
 

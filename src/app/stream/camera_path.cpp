@@ -60,8 +60,8 @@ PathRow row_of(double seconds, const Vec3d& eye, const Vec3d& target) {
 }
 
 std::vector<PathRow> fly_path(const StreamScene& scene) {
-  const Vec3d center = 0.5 * (scene.low + scene.high);
-  const double radius = std::max(0.5 * glm::length(scene.high - scene.low), scene.object_radius * 1e-6);
+  const Vec3d center = 0.5 * (scene.box.low + scene.box.high);
+  const double radius = std::max(0.5 * glm::length(scene.box.size()), scene.object_radius * 1e-6);
   const auto around = [&](double turn, double distance) {
     const double angle = 2.0 * std::numbers::pi * turn;
     return center + radius * distance * Vec3d(0.9 * std::sin(angle), std::sqrt(1.0 - 0.81), 0.9 * std::cos(angle));
@@ -81,12 +81,12 @@ std::vector<PathRow> fly_path(const StreamScene& scene) {
 
 std::vector<PathRow> walk_path(const StreamScene& scene) {
   const double radius = scene.object_radius;
-  const Vec3d size = scene.high - scene.low, center = 0.5 * (scene.low + scene.high);
+  const Vec3d size = scene.box.size(), center = 0.5 * (scene.box.low + scene.box.high);
   const Vec3d ahead = size.x >= size.z ? Vec3d(1.0, 0.0, 0.0) : Vec3d(0.0, 0.0, 1.0);
   const double half = 0.5 * std::max(size.x, size.z) + radius;
   const double seconds = std::min(10.0, 2.0 * half / (2.5 * radius));
   Vec3d eye = center - half * ahead;
-  eye.y = scene.high.y + 0.2 * radius;
+  eye.y = scene.box.high.y + 0.2 * radius;
   const Vec3d look = radius * (ahead - Vec3d(0.0, 0.45, 0.0));  // 24 degrees down
   const Vec3d end = eye + ahead * (2.5 * radius * seconds);
   return {row_of(0.0, eye, eye + look), row_of(seconds, end, end + look)};
@@ -94,8 +94,8 @@ std::vector<PathRow> walk_path(const StreamScene& scene) {
 
 std::vector<PathRow> turn_path(const StreamScene& scene) {
   const double radius = scene.object_radius;
-  Vec3d eye = 0.5 * (scene.low + scene.high);
-  eye.y = scene.high.y + 0.2 * radius;
+  Vec3d eye = 0.5 * (scene.box.low + scene.box.high);
+  eye.y = scene.box.high.y + 0.2 * radius;
   std::vector<PathRow> rows;
   constexpr int kSteps = 60;
   for (int i = -1; i <= kSteps; ++i) {
@@ -110,12 +110,13 @@ std::vector<PathRow> teleport_path(const StreamScene& scene) {
   const double radius = scene.object_radius;
   SplitMix64 random(1);
   std::vector<PathRow> rows;
-  const Vec3d low = scene.low - Vec3d(radius, 0.0, radius), high = scene.high + Vec3d(radius, 0.0, radius);
+  const Vec3d low = scene.box.low - Vec3d(radius, 0.0, radius), high = scene.box.high + Vec3d(radius, 0.0, radius);
   constexpr int kPlaces = 10;
   for (int i = 0; i < kPlaces; ++i) {
     const double x = random.between(low.x, high.x), z = random.between(low.z, high.z), up = random.between(0.1, 1.0);
-    const double a = random.between(scene.low.x, scene.high.x), b = random.between(scene.low.z, scene.high.z);
-    const Vec3d eye(x, scene.high.y + up * radius, z), target(a, 0.5 * (scene.low.y + scene.high.y), b);
+    const double a = random.between(scene.box.low.x, scene.box.high.x),
+                 b = random.between(scene.box.low.z, scene.box.high.z);
+    const Vec3d eye(x, scene.box.high.y + up * radius, z), target(a, 0.5 * (scene.box.low.y + scene.box.high.y), b);
     rows.push_back(row_of(i, eye, target));
     rows.back().is_cut = i > 0;
   }

@@ -3,13 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <optional>
 
 #include <meshlode/page.h>
 
 #include "app/stream/words.h"
+#include "base/box.h"
 #include "base/printable.h"
 #include "base/try.h"
 #include "run/unpack/unpack.h"
@@ -115,33 +115,30 @@ Status add_tables(const run::Asset& asset, StreamScene& scene) {
 }
 
 /// Grows the bounds of the scene by the box of one instance. What is not finite is not drawn.
-void add_bounds(format::InstanceRecord& instance, bool& is_first, StreamScene& scene) {
+void add_bounds(format::InstanceRecord& instance, StreamScene& scene) {
   const format::MeshRecord& mesh = scene.meshes[instance.mesh];
   if ((instance.flags & format::kInstanceSingular) != 0 || mesh.cluster_count == 0) return;
   const double step = std::ldexp(static_cast<double>(mesh.grid.mantissa), mesh.grid.log2);
-  Vec3d low(std::numeric_limits<double>::infinity()), high = -low;
-  for (int corner = 0; corner < 8; ++corner) {
-    Vec3d p{0.0}, world{0.0};
-    for (int axis = 0; axis < 3; ++axis) {
-      const bool is_high = ((corner >> axis) & 1) != 0;
-      p[axis] = mesh.origin[axis] + step * (is_high ? mesh.bounds_max[axis] : mesh.bounds_min[axis]);
-    }
+  Box3d of_mesh, box;
+  for (int axis = 0; axis < 3; ++axis) {
+    of_mesh.low[axis] = mesh.origin[axis] + step * mesh.bounds_min[axis];
+    of_mesh.high[axis] = mesh.origin[axis] + step * mesh.bounds_max[axis];
+  }
+  for (const Vec3d& p : of_mesh.corners()) {
+    Vec3d world{0.0};
     for (int row = 0; row < 3; ++row) {
       const double* m = instance.transform + 4 * row;
       world[row] = m[0] * p.x + m[1] * p.y + m[2] * p.z + m[3];
     }
-    low = glm::min(low, world);
-    high = glm::max(high, world);
+    box.add(world);
   }
-  const double radius = 0.5 * glm::length(high - low);
+  const double radius = 0.5 * glm::length(box.size());
   if (!std::isfinite(radius)) {
     instance.flags |= format::kInstanceSingular;
     return;
   }
-  scene.low = is_first ? low : glm::min(scene.low, low);
-  scene.high = is_first ? high : glm::max(scene.high, high);
-  scene.object_radius = is_first ? radius : std::max(scene.object_radius, radius);
-  is_first = false;
+  scene.object_radius = scene.box.is_empty() ? radius : std::max(scene.object_radius, radius);
+  scene.box.add(box);
 }
 
 }  // namespace
@@ -200,7 +197,6 @@ Result<StreamScene> make_stream_scene(std::span<const run::Asset> assets, std::s
       return Error{error.code, names[i] + (error.where.empty() ? "" : ": ") + error.where, error.detail};
     }
   }
-  bool is_first = true;
   std::uint64_t clusters = 0;
   for (const Placement& placement : placements) {
     const run::Asset& asset = assets[placement.asset];
@@ -211,14 +207,14 @@ Result<StreamScene> make_stream_scene(std::span<const run::Asset> assets, std::s
       instance.mesh += first_mesh[placement.asset];
       clusters += scene.meshes[instance.mesh].cluster_count;
       place(placement, instance);
-      add_bounds(instance, is_first, scene);
+      add_bounds(instance, scene);
       scene.instances.push_back(instance);
     }
     if (clusters > kMostPlacedClusters) {
       return Error{ErrorCode::kUnsupported, "", "the instances of the scene have more than 134,217,728 clusters"};
     }
   }
-  if (is_first) return Error{ErrorCode::kInvalid, "", "nothing of the scene can be drawn"};
+  if (scene.box.is_empty()) return Error{ErrorCode::kInvalid, "", "nothing of the scene can be drawn"};
   if (!(scene.object_radius > 0.0)) scene.object_radius = 1.0;
   return scene;
 }

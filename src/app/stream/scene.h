@@ -12,6 +12,7 @@
 #include <meshlode/format.h>
 #include <meshlode/result.h>
 
+#include "base/box.h"
 #include "base/vec.h"
 #include "run/read/asset.h"
 #include "run/select/select.h"
@@ -52,7 +53,7 @@ struct StreamScene {
   std::vector<StreamPage> pages;
   std::vector<std::uint32_t> first_mesh_of_file;  ///< of each asset
   std::vector<std::uint32_t> cluster_bytes;       ///< decoded, of each cluster in its page
-  Vec3d low{0.0}, high{0.0};                      ///< of what is drawn
+  Box3d box;                                      ///< of what is drawn
   double object_radius = 1.0;                     ///< half the diagonal of the largest instance
 
   [[nodiscard]] run::SelectTables tables() const { return {meshes, instances, groups, clusters, nodes}; }

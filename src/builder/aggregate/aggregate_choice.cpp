@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/box.h"
 #include "base/disjoint_sets.h"
 #include "base/glob.h"
 #include "scene/parts/pieces.h"
@@ -36,17 +37,16 @@ std::string describe(std::uint64_t pieces, std::uint64_t largest, const std::str
 /// Pieces together, and whether they are many small ones.
 struct Look {
   std::uint64_t count = 0, triangles = 0, in_small = 0, largest = 0;
-  Vec3d low{0.0}, high{0.0};
+  Box3d box;
   std::vector<double> widths;
 
   void add(const Piece& piece) {
-    low = count == 0 ? piece.low : glm::min(low, piece.low);
-    high = count == 0 ? piece.high : glm::max(high, piece.high);
+    box.add(piece.box);
     ++count;
     triangles += piece.triangles;
     if (piece.triangles <= kSmallPiece) in_small += piece.triangles;
     largest = std::max(largest, piece.triangles);
-    widths.push_back(glm::length(piece.high - piece.low));
+    widths.push_back(glm::length(piece.box.size()));
   }
   /// Why they are no aggregate; empty where they are one.
   [[nodiscard]] std::string fault() {
@@ -55,7 +55,7 @@ struct Look {
     if (static_cast<double>(in_small) < kSmallShare * static_cast<double>(triangles)) return "not all are small";
     const auto middle = widths.begin() + static_cast<std::ptrdiff_t>(widths.size() / 2);
     std::nth_element(widths.begin(), middle, widths.end());
-    if (*middle > kWidestPiece * glm::length(high - low)) return "as wide as much of the mesh";
+    if (*middle > kWidestPiece * glm::length(box.size())) return "as wide as much of the mesh";
     return {};
   }
 };

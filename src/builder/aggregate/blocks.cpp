@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "base/box.h"
+
 namespace meshlode::builder {
 
 namespace {
@@ -15,13 +17,9 @@ class Along {
  public:
   /// \pre there are some
   Along(std::span<const Vec3d> points, Run run) : points_(points) {
-    Vec3d low = points[run.front()], high = low;
-    for (const std::uint32_t i : run) {
-      low = glm::min(low, points[i]);
-      high = glm::max(high, points[i]);
-    }
-    const Vec3d size = high - low;
-    axis_ = size.x >= size.y && size.x >= size.z ? 0 : (size.y >= size.z ? 1 : 2);
+    Box3d box;
+    for (const std::uint32_t i : run) box.add(points[i]);
+    axis_ = box.longest_axis();
   }
   [[nodiscard]] bool operator()(std::uint32_t a, std::uint32_t b) const {
     const double x = points_[a][axis_], y = points_[b][axis_];

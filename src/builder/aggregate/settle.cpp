@@ -9,6 +9,7 @@
 #include <optional>
 #include <utility>
 
+#include "base/box.h"
 #include "base/parallel.h"
 #include "builder/aggregate/views.h"
 #include "builder/symmetric.h"
@@ -63,18 +64,12 @@ class Room {
     Mat3d moments(0.0);
     for (const Splat& splat : splats) moments += outer(splat.center - middle, splat.center - middle);
     axes_ = axes_of(moments).direction;
-    constexpr double kFar = std::numeric_limits<double>::max();
-    Vec3d low(kFar), high(-kFar);  // of middles
+    Box3d middles;
     for (const Splat& splat : splats) {
-      const Vec3d at = along(splat.center);
-      low = glm::min(low, at);
-      high = glm::max(high, at);
-      for (const Vec3d& corner : splat.corners(way.factor)) {
-        low_ = glm::min(low_, along(corner));
-        high_ = glm::max(high_, along(corner));
-      }
+      middles.add(along(splat.center));
+      for (const Vec3d& corner : splat.corners(way.factor)) box_.add(along(corner));
     }
-    half_ = 0.5 * (high - low);
+    half_ = 0.5 * middles.size();
   }
 
   /// By `reach` at most along each axis, and by no more than middles are apart there.
@@ -86,8 +81,7 @@ class Room {
   [[nodiscard]] bool holds(const Corners& corners) const {
     return std::all_of(corners.begin(), corners.end(), [&](const Vec3d& corner) {
       const Vec3d at = along(corner);
-      return at.x >= low_.x && at.y >= low_.y && at.z >= low_.z && at.x <= high_.x && at.y <= high_.y &&
-             at.z <= high_.z;
+      return box_.is_within({at, at}, 0.0);
     });
   }
 
@@ -97,7 +91,7 @@ class Room {
   }
 
   std::array<Vec3d, 3> axes_;
-  Vec3d low_{std::numeric_limits<double>::max()}, high_{-std::numeric_limits<double>::max()};  ///< of corners
+  Box3d box_;        ///< of corners
   Vec3d half_{0.0};  ///< of the box of the middles
 };
 

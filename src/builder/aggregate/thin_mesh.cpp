@@ -9,6 +9,7 @@
 #include <optional>
 #include <utility>
 
+#include "base/box.h"
 #include "base/parallel.h"
 #include "builder/aggregate/blocks.h"
 #include "builder/aggregate/candidates.h"
@@ -45,15 +46,12 @@ constexpr double kMostCardArea = 25.0;
 constexpr double kFinestPixels = 110.0;  // pixels along the mesh's longest side: below, levels are not told apart
 
 MeshFrame frame_of(const PreparedMesh& mesh) {
-  Vec3d low = corners_of(mesh, 0)[0], high = low;
+  Box3d box;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    for (const Vec3d& corner : corners_of(mesh, t)) {
-      low = glm::min(low, corner);
-      high = glm::max(high, corner);
-    }
+    for (const Vec3d& corner : corners_of(mesh, t)) box.add(corner);
   }
-  const Vec3d size = high - low;
-  return {0.5 * (low + high), 0.5 * glm::length(size), std::max({size.x, size.y, size.z})};
+  const Vec3d size = box.size();
+  return {0.5 * (box.low + box.high), 0.5 * glm::length(size), std::max({size.x, size.y, size.z})};
 }
 
 /// Where a block has few members, what stays in place is nearest to the picture; where it has many, what is spread. A

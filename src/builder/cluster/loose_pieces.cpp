@@ -6,6 +6,7 @@
 #include <numeric>
 #include <utility>
 
+#include "base/box.h"
 #include "base/local_ids.h"
 
 namespace meshlode::builder {
@@ -111,14 +112,9 @@ Clustering cluster_pieces(std::span<const WedgeTriangle> triangles, std::span<co
     }
     const auto begin = order.begin() + static_cast<std::ptrdiff_t>(range.begin);
     const auto end = order.begin() + static_cast<std::ptrdiff_t>(range.end);
-    Vec3d low = center[piece[*begin]];
-    Vec3d high = low;
-    for (auto it = begin; it != end; ++it) {
-      low = glm::min(low, center[piece[*it]]);
-      high = glm::max(high, center[piece[*it]]);
-    }
-    const Vec3d extent = high - low;
-    const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : (extent.y >= extent.z ? 1 : 2);
+    Box3d box;
+    for (auto it = begin; it != end; ++it) box.add(center[piece[*it]]);
+    const int axis = box.longest_axis();
     const std::size_t left_parts = range.parts / 2;
     const std::size_t left = (range.end - range.begin) * left_parts / range.parts;
     std::nth_element(begin, begin + static_cast<std::ptrdiff_t>(left), end, [&](std::uint32_t a, std::uint32_t b) {

@@ -9,6 +9,7 @@
 #include <limits>
 #include <span>
 
+#include "base/box.h"
 #include "base/parallel.h"
 #include "base/release.h"
 #include "builder/deviation/lanes.h"
@@ -175,15 +176,12 @@ void SurfaceTree::build(const Surface& surface, Leaves leaves, Capsules capsules
 }
 
 void SurfaceTree::set_frame() {
-  Vec3d low(std::numeric_limits<double>::infinity()), high(-std::numeric_limits<double>::infinity());
+  Box3d box;
   for (const auto& t : surface_.triangles) {
-    for (const std::uint32_t v : t) {
-      low = glm::min(low, surface_.positions[v]);
-      high = glm::max(high, surface_.positions[v]);
-    }
+    for (const std::uint32_t v : t) box.add(surface_.positions[v]);
   }
-  center_ = low + (high - low) * 0.5;
-  const Vec3d half = (high - low) * 0.5;
+  const Vec3d half = box.size() * 0.5;
+  center_ = box.low + half;
   const double extent = std::max(half.x, std::max(half.y, half.z));
   int exponent = 0;
   (void)std::frexp(extent, &exponent);

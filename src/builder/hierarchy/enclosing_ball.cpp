@@ -13,6 +13,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "base/box.h"
+
 #include "builder/hierarchy/enclosing_ball.h"
 
 namespace meshlode::builder {
@@ -45,13 +47,10 @@ double radius_around(const std::vector<Packed>& balls, const Vec3d& center) {
 }  // namespace
 
 Ball enclosing_ball(std::span<const Ball> balls) {
-  Vec3d low = balls[0].center - Vec3d(balls[0].radius), high = balls[0].center + Vec3d(balls[0].radius);
-  for (const Ball& b : balls) {
-    low = glm::min(low, b.center - Vec3d(b.radius));
-    high = glm::max(high, b.center + Vec3d(b.radius));
-  }
-  const Vec3d middle = low + (high - low) * 0.5;
-  const Vec3d extent = high - low;
+  Box3d box;
+  for (const Ball& b : balls) box.add({b.center - b.radius, b.center + b.radius});
+  const Vec3d extent = box.size();
+  const Vec3d middle = box.low + extent * 0.5;
   const double size = std::max(extent.x, std::max(extent.y, extent.z));
   if (!(size > 0.0) || balls.size() == 1) return balls[0];
 

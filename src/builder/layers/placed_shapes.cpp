@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <tuple>
 
@@ -139,17 +138,14 @@ std::uint32_t plain_look(const scene::SourceMesh& mesh, std::span<const scene::S
 Shape make_shape(const scene::SourceMesh& mesh, std::span<const scene::SceneMaterial> materials) {
   Shape shape;
   add_primitives(mesh, materials, shape);
-  shape.low = Vec3d(std::numeric_limits<double>::infinity());
-  shape.high = -shape.low;
   for (const auto& triangle : shape.triangles) {
     for (const std::uint32_t v : triangle) {
       if (v >= shape.positions.size() || !is_sound(shape.positions[v])) return {};  // refused later, by its name
-      shape.low = glm::min(shape.low, shape.positions[v]);
-      shape.high = glm::max(shape.high, shape.positions[v]);
+      shape.box.add(shape.positions[v]);
     }
   }
   if (shape.triangles.empty()) return {};
-  const Vec3d half = shape.high * 0.5 - shape.low * 0.5;
+  const Vec3d half = shape.box.high * 0.5 - shape.box.low * 0.5;
   const double diagonal = 2.0 * std::sqrt(glm::dot(half, half));
   if (!(diagonal > kSmallest)) return {};
   int exponent = 0;
@@ -179,28 +175,23 @@ void PlacedShapes::place(const scene::Scene& scene, std::span<const std::uint8_t
     const double det = glm::determinant(place.linear);
     if (!std::isfinite(det) || det == 0.0) continue;
     place.inverse = glm::inverse(place.linear);
-    place.low = Vec3d(std::numeric_limits<double>::infinity());
-    place.high = -place.low;
-    for (int corner = 0; corner < 8; ++corner) {
-      const Vec3d at((corner & 1) != 0 ? shape.high.x : shape.low.x, (corner & 2) != 0 ? shape.high.y : shape.low.y,
-                     (corner & 4) != 0 ? shape.high.z : shape.low.z);
-      const Vec3d there = place.linear * at + place.offset;
-      place.low = glm::min(place.low, there);
-      place.high = glm::max(place.high, there);
-    }
-    if (is_sound(place.low) && is_sound(place.high) && is_sound(place.inverse[0]) && is_sound(place.inverse[1]) &&
-        is_sound(place.inverse[2])) {
+    for (const Vec3d& corner : shape.box.corners()) place.box.add(place.linear * corner + place.offset);
+    if (is_sound(place.box.low) && is_sound(place.box.high) && is_sound(place.inverse[0]) &&
+        is_sound(place.inverse[1]) && is_sound(place.inverse[2])) {
       places_.push_back(place);
     }
   }
   if (places_.size() < 2) return;
   // By where they are, whatever numbers the file gave to meshes and nodes.
-  const auto key = [](const Place& p) { return std::tuple(p.low.x, p.low.y, p.low.z, p.high.x, p.high.y, p.high.z); };
+  const auto key = [](const Place& p) {
+    const auto& [low, high] = p.box;
+    return std::tuple(low.x, low.y, low.z, high.x, high.y, high.z);
+  };
   std::stable_sort(places_.begin(), places_.end(), [&](const Place& a, const Place& b) { return key(a) < key(b); });
   for (std::uint32_t i = 0; i < places_.size(); ++i) {
     places_of_[places_[i].mesh].push_back(i);
     const auto first = static_cast<std::uint32_t>(corners_.size());
-    corners_.insert(corners_.end(), {places_[i].low, places_[i].high});
+    corners_.insert(corners_.end(), {places_[i].box.low, places_[i].box.high});
     boxes_.push_back({first, first + 1, first});
   }
   world_.build({corners_, boxes_}, SurfaceTree::Leaves::kMade, SurfaceTree::Capsules::kLater);
@@ -215,13 +206,14 @@ void PlacedShapes::meet_others(std::uint32_t mesh, std::size_t place, const Laye
   const std::uint32_t own = places_of_[mesh][place];
   const Place& here = places_[own];
   const Vec3d from = here.linear * ray.from + here.offset, along = here.linear * ray.along;
-  const Vec3d low = glm::min(from - along, from + along), high = glm::max(from - along, from + along);
+  Box3d around;
+  around.add(from - along);
+  around.add(from + along);
   int neighbours = 0;
   world_.visit_along(from - along, from + along, [&](TreeSlot slot) {
     const std::uint32_t other = world_.triangle_at(slot);
     const Place& there = places_[other];
-    const auto is_apart = [&](int k) { return high[k] < there.low[k] || low[k] > there.high[k]; };
-    if (other == own || is_apart(0) || is_apart(1) || is_apart(2)) return true;
+    if (other == own || !around.is_within(there.box, 0.0)) return true;
     if (there.mesh == mesh && shapes_[mesh].plain_look != kNoId) return true;
     if (++neighbours > kMostNeighbours) return false;
     LayerRay moved = ray;

@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "base/box.h"
 #include "base/ids.h"
 #include "base/vec.h"
 #include "builder/deviation/point_distance.h"
@@ -25,7 +26,7 @@ struct Shape {
   std::vector<std::uint8_t> is_double_sided;  ///< per triangle; empty: none is
   std::uint32_t plain_look = kNoId;           ///< plain_look()
   std::vector<std::uint32_t> looks;           ///< the same per triangle; empty: all have plain_look
-  Vec3d low{0.0}, high{0.0};
+  Box3d box;
   double diagonal = 0.0;  ///< 0: there is nothing to meet, or nothing whose square is a sound double
   double per_unit = 1.0;  ///< a power of two that makes the diagonal about 1
   SurfaceTree tree;
@@ -90,7 +91,7 @@ class PlacedShapes {
     std::uint32_t mesh = 0;
     Mat3d linear{1.0}, inverse{1.0};
     Vec3d offset{0.0};
-    Vec3d low{0.0}, high{0.0};  ///< in the world
+    Box3d box;  ///< in the world
   };
   void place(const scene::Scene& scene, std::span<const std::uint8_t> stands_alone);
 

@@ -23,6 +23,7 @@
 #include <tuple>
 #include <vector>
 
+#include "base/box.h"
 #include "builder/deviation/bounded_search.h"
 #include "builder/deviation/source_tree.h"
 #include "builder/lod_dag.h"

@@ -4,7 +4,6 @@
 
 #include <array>
 #include <cstdint>
-#include <limits>
 #include <span>
 #include <vector>
 
@@ -17,21 +16,6 @@
 #include "format/grid.h"
 
 namespace meshlode::builder {
-
-/// Around points; at first around none.
-struct Box3d {
-  Vec3d low{std::numeric_limits<double>::infinity()}, high{-std::numeric_limits<double>::infinity()};
-
-  void add(const Vec3d& point) {
-    low = glm::min(low, point);
-    high = glm::max(high, point);
-  }
-  /// Along each axis they are so near.
-  [[nodiscard]] bool is_within(const Box3d& other, double distance) const {
-    return glm::all(glm::lessThanEqual(low, other.high + distance)) &&
-           glm::all(glm::lessThanEqual(other.low, high + distance));
-  }
-};
 
 struct LevelSurface {
   using Triangle = std::array<std::uint32_t, 3>;

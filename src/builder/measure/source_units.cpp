@@ -6,6 +6,7 @@
 #include <numeric>
 #include <utility>
 
+#include "base/box.h"
 #include "base/parallel.h"
 #include "base/release.h"
 #include "builder/measure/level_surface.h"
@@ -25,18 +26,13 @@ constexpr std::size_t kClustersOfBlock = 64;
 template <class Add>
 void halve(std::span<std::uint32_t> triangles, const SourceTree::Impl& source, const Add& add) {
   if (triangles.size() <= kUnit) return add(triangles);
-  Vec3d low(std::numeric_limits<double>::infinity()), high(-low);
+  Box3d centers;
   const auto center = [&](std::uint32_t t) {
     const auto [a, b, c] = source.corners(t);
     return a + b + c;
   };
-  for (const std::uint32_t t : triangles) {
-    const Vec3d at = center(t);
-    low = glm::min(low, at);
-    high = glm::max(high, at);
-  }
-  const Vec3d size = high - low;
-  const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+  for (const std::uint32_t t : triangles) centers.add(center(t));
+  const int axis = centers.longest_axis();
   const std::size_t half = triangles.size() / 2;
   std::nth_element(triangles.begin(), triangles.begin() + static_cast<std::ptrdiff_t>(half), triangles.end(),
                    [&](std::uint32_t x, std::uint32_t y) {
@@ -99,7 +95,7 @@ void SourceUnits::Block::add_unit(const SourceTree::Impl& source, std::span<cons
   Unit unit;
   unit.first_vertex = static_cast<std::uint32_t>(vertices.size());
   unit.first_triangle = static_cast<std::uint32_t>(triangles.size());
-  Vec3d low(std::numeric_limits<double>::infinity()), high(-low);
+  Box3d box;
   for (const std::uint32_t t : triangles_of_unit) {
     Triangle triangle;
     triangle.id = t;
@@ -109,14 +105,13 @@ void SourceUnits::Block::add_unit(const SourceTree::Impl& source, std::span<cons
       const auto at = std::find(begin, vertices.end(), ids[k]);
       triangle.corner[k] = static_cast<std::uint8_t>(at - begin);
       if (at == vertices.end()) vertices.push_back(ids[k]);
-      low = glm::min(low, source.positions[ids[k]]);
-      high = glm::max(high, source.positions[ids[k]]);
+      box.add(source.positions[ids[k]]);
     }
     triangles.push_back(triangle);
   }
   unit.vertex_count = static_cast<std::uint32_t>(vertices.size()) - unit.first_vertex;
   unit.triangle_count = static_cast<std::uint32_t>(triangles_of_unit.size());
-  unit.center = low + 0.5 * (high - low);
+  unit.center = box.low + 0.5 * box.size();
   double radius2 = 0.0;
   for (std::size_t v = unit.first_vertex; v < vertices.size(); ++v) {
     const Vec3d away = source.positions[vertices[v]] - unit.center;

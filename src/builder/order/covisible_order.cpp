@@ -13,6 +13,7 @@
 #include <span>
 #include <vector>
 
+#include "base/box.h"
 #include "base/parallel.h"
 #include "base/random.h"
 #include "base/vec.h"
@@ -76,12 +77,9 @@ std::vector<GroupBounds> bounds_of(const OrderedGroups& mesh) {
 /// Looking at groups drawn at random, from half the mesh's radius to eight: nearer a small piece is seen, further away
 /// nothing but the top is needed. Ranges from a quarter to sixteen, to four and to two radii do no better at 32 KiB.
 std::vector<TrainingView> training_views(std::span<const GroupBounds> bounds) {
-  Vec3d low = bounds[0].center, high = low;
-  for (const GroupBounds& group : bounds) {
-    low = glm::min(low, group.center - group.radius);
-    high = glm::max(high, group.center + group.radius);
-  }
-  const double radius = 0.5 * length_of(high - low);
+  Box3d box;
+  for (const GroupBounds& group : bounds) box.add({group.center - group.radius, group.center + group.radius});
+  const double radius = 0.5 * length_of(box.size());
   SplitMix64 random(1);
   std::vector<TrainingView> views(kTrainingViews);
   for (TrainingView& view : views) {
@@ -178,15 +176,9 @@ class LevelOrder {
   }
 
   std::size_t split_in_space(std::span<std::uint32_t> groups) const {
-    Vec3d low = bounds_[groups[0]].center, high = low;
-    for (const std::uint32_t g : groups) {
-      low = glm::min(low, bounds_[g].center);
-      high = glm::max(high, bounds_[g].center);
-    }
-    int longest = 0;
-    for (int axis = 1; axis < 3; ++axis) {
-      if (high[axis] - low[axis] > high[longest] - low[longest]) longest = axis;
-    }
+    Box3d centers;
+    for (const std::uint32_t g : groups) centers.add(bounds_[g].center);
+    const int longest = centers.longest_axis();
     std::sort(groups.begin(), groups.end(), [&](std::uint32_t a, std::uint32_t b) {
       const double x = bounds_[a].center[longest], y = bounds_[b].center[longest];
       return x != y ? x < y : a < b;

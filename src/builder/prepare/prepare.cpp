@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <string>
 #include <vector>
 
 #include <meshlode/format.h>
 
+#include "base/box.h"
 #include "base/disjoint_sets.h"
 #include "base/parallel.h"
 #include "base/try.h"
@@ -77,27 +77,18 @@ constexpr double kSmallestDiagonal = 0x1p-500;  ///< its square keeps all bits o
 constexpr double kLargestHalf = 32766.0 * 0x1p104;
 static_assert(format::kMaxSphereLog2 == 104);
 
-struct Box {
-  Vec3d low{std::numeric_limits<double>::infinity()}, high{-std::numeric_limits<double>::infinity()};
-  void add(const Vec3d& from, const Vec3d& to) {
-    low = glm::min(low, from);
-    high = glm::max(high, to);
-  }
-};
-
 /// Of the vertices that triangles use: stray points do not coarsen the grid.
-Box box_of_corners(const Corners& corners) {
-  Box all;
-  for (const Box& box : sums_of_chunks(corners.triangles.size(), Box{}, [&](std::size_t i, Box&sum) {
-         const Vec3d& p = corners.positions[corners.triangles[i]];
-         sum.add(p, p);
+Box3d box_of_corners(const Corners& corners) {
+  Box3d all;
+  for (const Box3d& box : sums_of_chunks(corners.triangles.size(), Box3d{}, [&](std::size_t i, Box3d&sum) {
+         sum.add(corners.positions[corners.triangles[i]]);
        })) {
-    all.add(box.low, box.high);
+    all.add(box);
   }
   return all;
 }
 
-Status take_frame(const Box& box, const GridFrame& frame, PreparedMesh& mesh) {
+Status take_frame(const Box3d& box, const GridFrame& frame, PreparedMesh& mesh) {
   mesh.origin = frame.origin;
   mesh.grid = frame.grid;
   const double reach = frame.grid.step() * format::kMaxGridCoordinate;
@@ -110,7 +101,7 @@ Status take_frame(const Box& box, const GridFrame& frame, PreparedMesh& mesh) {
 
 /// Grid and origin from the bounds of the source.
 Status choose_frame(const Corners& corners, const PrepareOptions& options, PreparedMesh& mesh) {
-  const Box all = box_of_corners(corners);
+  const Box3d all = box_of_corners(corners);
   const auto& [low, high] = all;
   const Vec3d half = (high - low) * 0.5;
   mesh.diagonal = 2.0 * std::sqrt(glm::dot(half, half));
@@ -212,8 +203,7 @@ Result<GridPlan> plan_grid(const scene::SourceMesh& source, const PrepareOptions
   if (const Status frame = choose_frame(corners, options, mesh); !frame) {
     return Error{frame.error().code, where, frame.error().detail};
   }
-  const Box box = box_of_corners(corners);
-  const Vec3d sides = box.high - box.low;
+  const Vec3d sides = box_of_corners(corners).size();
   return GridPlan{mesh.grid, std::max({sides.x, sides.y, sides.z}), median_edge_length(corners)};
 }
 

@@ -9,6 +9,7 @@
 #include <numeric>
 #include <utility>
 
+#include "base/box.h"
 #include "base/parallel.h"
 #include "base/try.h"
 #include "draw/textures/texture_image.h"
@@ -252,13 +253,10 @@ std::optional<CoverageDrift> measure_coverage(std::span<const CoveringTriangle> 
                                               std::span<const CoveringTriangle> cut, const draw::AlphaMasks& masks,
                                               double pixel_size, double closer) {
   if (source.empty() || !(pixel_size > 0.0)) return std::nullopt;
-  Vec3d low = source.front().corners[0], high = low;
+  Box3d box;
   for (const auto set : {source, cut}) {
     for (const CoveringTriangle& triangle : set) {
-      for (const Vec3d& corner : triangle.corners) {
-        low = glm::min(low, corner);
-        high = glm::max(high, corner);
-      }
+      for (const Vec3d& corner : triangle.corners) box.add(corner);
     }
   }
   // Samples that are farther apart than triangles are wide would find them by luck, and a few of them what a mask lets
@@ -275,11 +273,11 @@ std::optional<CoverageDrift> measure_coverage(std::span<const CoveringTriangle> 
   const double fewest = closer * (has_masks ? kFewestMasked : kFewestCovered);
   const double few = std::sqrt(0.5 * area * static_cast<double>(directions) / fewest);
   std::size_t samples_a_pixel = kFewestSamples;
-  const auto side = [&] { return glm::length(high - low) / pixel_size * static_cast<double>(samples_a_pixel); };
+  const auto side = [&] { return glm::length(box.size()) / pixel_size * static_cast<double>(samples_a_pixel); };
   while (pixel_size > std::min(0.5 * width, few) * static_cast<double>(samples_a_pixel) && 2.0 * side() <= kMostSide)
     samples_a_pixel *= 2;
   if (side() > kMostSide) return std::nullopt;
-  const std::size_t steps = glm::length(high - low) < kFewPixels * pixel_size ? kStepsOfFew : kSteps;
+  const std::size_t steps = glm::length(box.size()) < kFewPixels * pixel_size ? kStepsOfFew : kSteps;
   std::vector<Sums> of_direction(directions);
   for (;; samples_a_pixel *= 2) {
     const double spacing = pixel_size / static_cast<double>(samples_a_pixel);

@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "base/box.h"
 #include "judge/metrics/seams.h"
 
 namespace meshlode::judge {
@@ -17,14 +18,11 @@ constexpr float kSameUv = 1e-6F;
 
 double range_of(const Field& field) {
   if (field.is_normal) return 180.0;
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  Vec3d low(kInfinity), high(-kInfinity);
+  Box3d box;
   for (const Vec3f& value : field.values) {
-    if (!is_known(Vec3d(value))) continue;
-    low = glm::min(low, Vec3d(value));
-    high = glm::max(high, Vec3d(value));
+    if (is_known(Vec3d(value))) box.add(Vec3d(value));
   }
-  const double range = glm::length(high - low);
+  const double range = glm::length(box.size());
   return range > 0.0 && std::isfinite(range) ? range : 1.0;
 }
 

@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "base/box.h"
 #include "base/parallel.h"
 #include "judge/metrics/area_samples.h"
 #include "judge/metrics/product_points.h"
@@ -28,16 +29,9 @@ double distance_between(const ProductPoint<N>& a, const ProductPoint<N>& b) {
   return std::sqrt(product::dot<N>(d, d));
 }
 
-struct Bounds {
-  Vec3d low{std::numeric_limits<double>::infinity()}, high{-std::numeric_limits<double>::infinity()};
-};
-
-Bounds bounds_of(const Surface& surface) {
-  Bounds bounds;
-  for (const Vec3d& p : surface.positions) {
-    bounds.low = glm::min(bounds.low, p);
-    bounds.high = glm::max(bounds.high, p);
-  }
+Box3d bounds_of(const Surface& surface) {
+  Box3d bounds;
+  for (const Vec3d& p : surface.positions) bounds.add(p);
   return bounds;
 }
 
@@ -150,7 +144,7 @@ Farthest find_farthest(const Measured<N>& from, const ProductTree<N>& to, double
 }
 
 template <std::size_t N>
-LargestDeviation find_largest_of(const Measured<N>& a, const Bounds& bounds_a, const ShadedSurface& surface_b,
+LargestDeviation find_largest_of(const Measured<N>& a, const Box3d& bounds_a, const ShadedSurface& surface_b,
                                  const ProductScales& scales, const DeviationOptions& options,
                                  const DistanceWeight& weight) {
   LargestDeviation out;
@@ -161,8 +155,9 @@ LargestDeviation find_largest_of(const Measured<N>& a, const Bounds& bounds_a, c
     return out;
   }
   const Measured<N> b = make_measured<N>(surface_b, scales, options);
-  const Bounds bounds_b = bounds_of(surface_b.surface);
-  const double extent = glm::length(glm::max(bounds_a.high, bounds_b.high) - glm::min(bounds_a.low, bounds_b.low));
+  Box3d bounds = bounds_of(surface_b.surface);
+  bounds.add(bounds_a);
+  const double extent = glm::length(bounds.size());
   std::atomic<double> largest = 0.0;
   const Farthest of_a = find_farthest<N>(a, b.tree, extent, weight, largest);
   const Farthest of_b = find_farthest<N>(b, a.tree, extent, weight, largest);
@@ -179,7 +174,7 @@ LargestDeviation find_largest_of(const Measured<N>& a, const Bounds& bounds_a, c
 struct ProductDistanceFrom::Parts {
   ProductScales scales;
   DeviationOptions options;
-  Bounds bounds;
+  Box3d bounds;
   std::optional<Measured<product::kFew>> few;  ///< one of them
   std::optional<Measured<product::kMany>> many;
 };

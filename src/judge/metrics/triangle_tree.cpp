@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/box.h"
 #include "base/parallel.h"
 #include "base/release.h"
 
@@ -94,17 +95,13 @@ constexpr double kMostPieces = 8.0;  // of one triangle
 // In all: twice the triangles, or this many where the triangles are few.
 constexpr double kPieceBudget = 262144.0;
 
-struct ExactBox {
-  Vec3d low, high;
-};
-
-ExactBox box_of(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
+Box3d box_of(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
   return {glm::min(a, glm::min(b, c)), glm::max(a, glm::max(b, c))};
 }
 
 /// Into how many pieces a triangle would best be cut.
 double wanted_pieces(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
-  const ExactBox box = box_of(a, b, c);
+  const Box3d box = box_of(a, b, c);
   const Vec3d size = box.high - box.low;
   const Vec3d cross = glm::cross(b - a, c - a);
   const double area = 0.5 * std::sqrt(glm::dot(cross, cross));
@@ -115,22 +112,18 @@ double wanted_pieces(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
 }
 
 /// The box of what lies between two planes across an axis, a little too large rather than too small.
-ExactBox box_between(const std::array<Vec3d, 3>& corners, int axis, double from, double to) {
-  ExactBox box{Vec3d(std::numeric_limits<double>::infinity()), Vec3d(-std::numeric_limits<double>::infinity())};
-  const auto add = [&](const Vec3d& p) {
-    box.low = glm::min(box.low, p);
-    box.high = glm::max(box.high, p);
-  };
+Box3d box_between(const std::array<Vec3d, 3>& corners, int axis, double from, double to) {
+  Box3d box;
   for (std::size_t k = 0; k < 3; ++k) {
     const Vec3d& p = corners[k];
     const Vec3d& q = corners[(k + 1) % 3];
-    if (p[axis] >= from && p[axis] <= to) add(p);
+    if (p[axis] >= from && p[axis] <= to) box.add(p);
     for (const double plane : {from, to}) {
       if ((p[axis] < plane) == (q[axis] < plane)) continue;
-      add(p + (q - p) * std::clamp((plane - p[axis]) / (q[axis] - p[axis]), 0.0, 1.0));
+      box.add(p + (q - p) * std::clamp((plane - p[axis]) / (q[axis] - p[axis]), 0.0, 1.0));
     }
   }
-  const ExactBox whole = box_of(corners[0], corners[1], corners[2]);
+  const Box3d whole = box_of(corners[0], corners[1], corners[2]);
   const Vec3d size = whole.high - whole.low, far = glm::max(glm::abs(whole.low), glm::abs(whole.high));
   const double rounding = 1e-12 * std::max({size.x, size.y, size.z}) + 1e-15 * std::max({far.x, far.y, far.z});
   return {box.low - rounding, box.high + rounding};
@@ -158,13 +151,11 @@ std::array<float, 3> center_of(const Box& box) {
 }  // namespace
 
 void TriangleTree::set_frame(const Surface& surface) {
-  Vec3d low(std::numeric_limits<double>::infinity()), high(-low);
+  Box3d box;
   for (const auto& t : surface.triangles) {
-    for (const std::uint32_t v : t) {
-      low = glm::min(low, surface.positions[v]);
-      high = glm::max(high, surface.positions[v]);
-    }
+    for (const std::uint32_t v : t) box.add(surface.positions[v]);
   }
+  const auto& [low, high] = box;
   origin_ = 0.5 * low + 0.5 * high;
   const Vec3d half = 0.5 * high - 0.5 * low;
   int exponent = 0;
@@ -214,7 +205,7 @@ TriangleTree::Items TriangleTree::cut_to_pieces(const Surface& surface) const {
   out.pieces.reserve(piece_count);
   for (std::size_t i = 0; i < count; ++i) {
     const std::array<Vec3d, 3> corners = corners_of(i);
-    const ExactBox box = box_of(corners[0], corners[1], corners[2]);
+    const Box3d box = box_of(corners[0], corners[1], corners[2]);
     const auto triangle = static_cast<std::uint32_t>(i);
     const auto parts = static_cast<std::uint32_t>(std::min(double{wanted[i]}, most));
     if (parts <= 1) {
@@ -226,7 +217,7 @@ TriangleTree::Items TriangleTree::cut_to_pieces(const Surface& surface) const {
     double from = box.low[axis];
     for (std::uint32_t part = 1; part <= parts; ++part) {
       const double to = part == parts ? box.high[axis] : box.low[axis] + size[axis] * part / parts;
-      const ExactBox piece = box_between(corners, axis, from, to);
+      const Box3d piece = box_between(corners, axis, from, to);
       out.pieces.push_back({to_frame(piece.low, piece.high), triangle});
       out.items.push_back(
           {center_of(out.pieces.back().box), static_cast<std::uint32_t>(count + out.pieces.size() - 1)});
@@ -240,7 +231,7 @@ TriangleTree::Box TriangleTree::box_of_item(const Items& items, const Item& item
   const Surface& surface = items.surface;
   if (item.id >= surface.triangles.size()) return items.pieces[item.id - surface.triangles.size()].box;
   const auto& t = surface.triangles[item.id];
-  const ExactBox box = box_of(surface.positions[t[0]], surface.positions[t[1]], surface.positions[t[2]]);
+  const Box3d box = box_of(surface.positions[t[0]], surface.positions[t[1]], surface.positions[t[2]]);
   return to_frame(box.low, box.high);
 }
 

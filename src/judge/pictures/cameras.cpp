@@ -16,32 +16,24 @@ Vec3d transform_point(const format::InstanceRecord& instance, const Vec3d& p) {
   return out;
 }
 
-WorldBox world_box(const run::Asset& asset) {
-  WorldBox box;
-  bool is_first = true;
+Box3d world_box(const run::Asset& asset) {
+  Box3d box;
   for (const format::InstanceRecord& instance : asset.instances()) {
     const format::MeshRecord& mesh = asset.meshes()[instance.mesh];
     if ((instance.flags & format::kInstanceSingular) != 0 || mesh.cluster_count == 0) continue;
     const double step = std::ldexp(static_cast<double>(mesh.grid.mantissa), mesh.grid.log2);
-    for (int corner = 0; corner < 8; ++corner) {
-      Vec3d p{0.0};
-      for (int axis = 0; axis < 3; ++axis) {
-        p[axis] =
-            mesh.origin[axis] + step * ((corner >> axis & 1) != 0 ? mesh.bounds_max[axis] : mesh.bounds_min[axis]);
-      }
-      const Vec3d world = transform_point(instance, p);
-      for (int axis = 0; axis < 3; ++axis) {
-        box.low[axis] = is_first ? world[axis] : std::min(box.low[axis], world[axis]);
-        box.high[axis] = is_first ? world[axis] : std::max(box.high[axis], world[axis]);
-      }
-      is_first = false;
+    Box3d of_mesh;
+    for (int axis = 0; axis < 3; ++axis) {
+      of_mesh.low[axis] = mesh.origin[axis] + step * mesh.bounds_min[axis];
+      of_mesh.high[axis] = mesh.origin[axis] + step * mesh.bounds_max[axis];
     }
+    for (const Vec3d& corner : of_mesh.corners()) box.add(transform_point(instance, corner));
   }
-  return box;
+  return box.is_empty() ? Box3d{Vec3d(0.0), Vec3d(0.0)} : box;
 }
 
 std::vector<NamedCamera> adversarial_cameras(const run::Asset& asset, std::uint32_t width, std::uint32_t height) {
-  const WorldBox box = world_box(asset);
+  const Box3d box = world_box(asset);
   const Vec3d center = 0.5 * (box.low + box.high);
   const double size = glm::length(box.high - box.low);
   const auto make = [&](const char* name, const Vec3d& eye, const Vec3d& target) {
@@ -75,7 +67,7 @@ std::vector<NamedCamera> adversarial_cameras(const run::Asset& asset, std::uint3
 
 std::vector<NamedCamera> orbit_cameras(const run::Asset& asset, std::uint32_t count, std::uint32_t width,
                                        std::uint32_t height) {
-  const WorldBox box = world_box(asset);
+  const Box3d box = world_box(asset);
   const Vec3d center = 0.5 * (box.low + box.high);
   const double size = glm::length(box.high - box.low);
   std::vector<NamedCamera> out;

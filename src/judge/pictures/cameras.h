@@ -9,17 +9,15 @@
 
 #include <meshlode/result.h>
 
+#include "base/box.h"
 #include "base/vec.h"
 #include "run/read/asset.h"
 #include "run/select/select.h"
 
 namespace meshlode::judge {
 
-/// The box of everything that can be drawn, world units.
-struct WorldBox {
-  Vec3d low{0.0}, high{0.0};
-};
-[[nodiscard]] WorldBox world_box(const run::Asset& asset);
+/// The box of everything that can be drawn, world units; of nothing, the origin.
+[[nodiscard]] Box3d world_box(const run::Asset& asset);
 
 /// A point of an instance's mesh, world units.
 [[nodiscard]] Vec3d transform_point(const format::InstanceRecord& instance, const Vec3d& p);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "base/box.h"
 #include "base/random.h"
 #include "base/try.h"
 #include "judge/pictures/source_picture.h"
@@ -57,7 +58,7 @@ std::vector<NamedCamera> id_cameras(const run::Asset& asset, std::uint32_t count
   std::vector<NamedCamera> out;
   Targets targets(asset, seed);
   if (targets.is_empty()) return out;
-  const WorldBox box = world_box(asset);
+  const Box3d box = world_box(asset);
   const Vec3d center = 0.5 * (box.low + box.high);
   const double size = glm::length(box.high - box.low);
   for (std::uint32_t i = 0; i < count; ++i) {

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/box.h"
 #include "base/parallel.h"
 #include "format/grid.h"
 #include "judge/metrics/drawn_triangles.h"
@@ -128,24 +129,18 @@ class SourceMatcher {
       for (std::uint32_t t = 0; t < source_.primitives[p].indices.size() / 3; ++t) sources_.push_back({p, t});
     }
     const std::vector<std::uint8_t> is_drawn = find_drawn(source_corners());
-    Vec3d low(0.0);
-    Vec3d high(0.0);
-    bool has_bounds = false;
+    Box3d box;
     std::size_t kept = 0;
     for (std::size_t i = 0; i < count; ++i) {
       if (is_drawn[i] == 0) continue;
       sources_[kept++] = sources_[i];
-      for (const Vec3d& corner : corners_of(sources_[kept - 1])) {
-        low = has_bounds ? glm::min(low, corner) : corner;
-        high = has_bounds ? glm::max(high, corner) : corner;
-        has_bounds = true;
-      }
+      for (const Vec3d& corner : corners_of(sources_[kept - 1])) box.add(corner);
     }
     degenerate_ = sources_.size() - kept;
     sources_.resize(kept);
     counts_.source_triangles = sources_.size();
     const auto at = [&] { return where(); };
-    const double diagonal = has_bounds ? std::sqrt(glm::dot(high - low, high - low)) : 0.0;
+    const double diagonal = kept > 0 ? std::sqrt(glm::dot(box.size(), box.size())) : 0.0;
     log_.expect(std::fabs(mesh_.diagonal - diagonal) <= 1e-9 * diagonal, Rule::kV103, at,
                 [&] { return differs("diagonal", mesh_.diagonal, "source", diagonal); });
   }

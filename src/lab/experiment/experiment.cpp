@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "base/box.h"
 #include "base/nearest_name.h"
 #include "base/try.h"
 #include "base/vec.h"
@@ -68,12 +69,9 @@ std::string record_of(const Experiment& experiment) {
 /// The ball around the centre of the balls' box: what a smaller one is held against.
 builder::Ball ball_around_box(std::span<const builder::Ball> balls) {
   if (balls.size() == 1) return balls[0];
-  Vec3d low = balls[0].center, high = low;
-  for (const builder::Ball& ball : balls) {
-    low = glm::min(low, ball.center - Vec3d(ball.radius));
-    high = glm::max(high, ball.center + Vec3d(ball.radius));
-  }
-  builder::Ball around{low + (high - low) * 0.5, 0.0};
+  Box3d box;
+  for (const builder::Ball& ball : balls) box.add({ball.center - ball.radius, ball.center + ball.radius});
+  builder::Ball around{box.low + box.size() * 0.5, 0.0};
   for (const builder::Ball& ball : balls) {
     around.radius = std::max(around.radius, glm::length(ball.center - around.center) + ball.radius);
   }

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/box.h"
+
 namespace meshlode::lab {
 
 using namespace scene;
@@ -30,15 +32,12 @@ void widen(Accessor& accessor, const double* values, int count) {
 Dequantization dequantization_of(const GlbMesh& mesh) {
   Dequantization out;
   if (!mesh.quantize) return out;
-  Vec3d low = mesh.primitives.at(0).positions.at(0), high = low;
+  Box3d box;
   for (const Primitive& primitive : mesh.primitives) {
-    for (const Vec3d& p : primitive.positions) {
-      low = glm::min(low, p);
-      high = glm::max(high, p);
-    }
+    for (const Vec3d& p : primitive.positions) box.add(p);
   }
-  out.center = 0.5 * (low + high);
-  const Vec3d half = 0.5 * (high - low);
+  out.center = 0.5 * (box.low + box.high);
+  const Vec3d half = 0.5 * box.size();
   out.scale = std::max({half.x, half.y, half.z, 1e-30});
   return out;
 }

@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "base/box.h"
+
 namespace meshlode::scene {
 
 namespace {
@@ -66,12 +68,8 @@ Fault find_far_from_origin(const Topology& topology) {
 Fault find_finer_than_grid(const Topology& topology) {
   Fault fault = fault_of(FaultKind::kFinerThanGrid);
   if (topology.points.empty()) return fault;
-  Vec3d low = topology.points[0], high = low;
-  for (const Vec3d& p : topology.points) {
-    low = glm::min(low, p);
-    high = glm::max(high, p);
-  }
-  const double step = choose_step(topology, high - low);
+  const Vec3d low = topology.box.low;
+  const double step = choose_step(topology, topology.box.size());
   if (step == 0.0) return fault;
   // Whole numbers of 23 bits: products and their differences are exact.
   const auto on_grid = [&](std::uint32_t point) { return glm::floor((topology.points[point] - low) / step + 0.5); };

@@ -6,6 +6,8 @@
 #include <tuple>
 #include <utility>
 
+#include "base/box.h"
+
 namespace meshlode::scene {
 
 namespace {
@@ -208,13 +210,10 @@ Topology make_topology(const SourceMesh& mesh) {
   }
   topology.unit = choose_unit(mesh);
   add_triangles(mesh, weld_points(mesh, topology), topology);
+  for (const Vec3d& p : topology.points) topology.box.add(p);
   if (!topology.points.empty()) {
-    Vec3d low = topology.points[0], high = low;
-    for (const Vec3d& p : topology.points) {
-      low = glm::min(low, p);
-      high = glm::max(high, p);
-    }
-    topology.diagonal = std::sqrt(glm::dot(high - low, high - low));
+    const Vec3d size = topology.box.size();
+    topology.diagonal = std::sqrt(glm::dot(size, size));
   }
   find_degenerate_triangles(topology);
   find_duplicate_triangles(mesh, topology);

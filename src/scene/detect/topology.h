@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "base/box.h"
 #include "base/vec.h"
 #include "scene/detect/fault.h"
 #include "scene/scene.h"
@@ -39,7 +40,8 @@ struct Topology {
   std::vector<Vec3d>
       points;             ///< distinct finite positions of triangles over `unit`: within 1, or 8 at the end of doubles
   double unit = 1.0;      ///< a power of two: object units in a unit of `points`
-  double diagonal = 0.0;  ///< of the bounding box of `points`, in their unit
+  Box3d box;              ///< of `points`, in their unit
+  double diagonal = 0.0;  ///< of the box
   double median_edge = 0.0;  ///< of the three edges of each sound triangle, in that unit; 0 where there are none
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< points; kNoId of a triangle that is kNotFinite
   std::vector<std::array<std::uint32_t, 3>> vertices;   ///< of the same corners, numbered through all primitives

@@ -42,15 +42,12 @@ Pieces::Pieces(const SourceMesh& mesh) {
     std::uint32_t& number = piece_of[sets.find(t[0])];
     if (number == kNoId) {
       number = static_cast<std::uint32_t>(pieces.size());
-      pieces.push_back({0, positions[t[0]], positions[t[0]], material});
+      pieces.push_back({0, {}, material});
     }
     of_triangle.push_back(number);
     Piece& piece = pieces[number];
     ++piece.triangles;
-    for (const std::uint32_t v : t) {
-      piece.low = glm::min(piece.low, positions[v]);
-      piece.high = glm::max(piece.high, positions[v]);
-    }
+    for (const std::uint32_t v : t) piece.box.add(positions[v]);
   });
 }
 

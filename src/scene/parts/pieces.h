@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "base/box.h"
 #include "scene/scene.h"
 
 namespace meshlode::scene {
@@ -29,7 +30,7 @@ void for_each_triangle(const SourceMesh& mesh, const Visit& visit) {
 
 struct Piece {
   std::uint64_t triangles = 0;
-  Vec3d low{0.0}, high{0.0};
+  Box3d box;
   std::uint32_t material = 0;  ///< of its first triangle
 };
 

@@ -77,8 +77,7 @@ StreamScene chain_scene(std::uint32_t count = 1) {
     instance.mesh = m;
     scene.instances.push_back(instance);
   }
-  scene.low = Vec3d(-1.0);
-  scene.high = Vec3d(1.0 + 100.0 * (count - 1), 1.0, 1.0);
+  scene.box = {Vec3d(-1.0), Vec3d(1.0 + 100.0 * (count - 1), 1.0, 1.0)};
   return scene;
 }
 

@@ -248,7 +248,7 @@ TEST_F(Scenes, RootsOfAFewPixelsAreDrawnBitForBit) {
   options.alpha_mask = scene->has_alpha_mask;
   auto renderer = Renderer::make(*device_, *scene, options);
   ASSERT_TRUE(renderer);
-  const judge::WorldBox box = judge::world_box(*asset);
+  const Box3d box = judge::world_box(*asset);
   const Vec3d center = 0.5 * (box.low + box.high);
   const double size = glm::length(box.high - box.low);
   std::uint64_t far_items = 0, covered = 0;

@@ -132,7 +132,7 @@ TEST(Picture, ATextureThatSwamExceedsThePromiseOfTexels) {
 TEST(Picture, ATriangleThatLevel0LostIsSeenInTheSourcesPicture) {
   Drawn rock = draw_rock();
   Surface surface = rock.source[0].surface;
-  const WorldBox box = world_box(*rock.asset);
+  const Box3d box = world_box(*rock.asset);
   const Vec3d size = box.high - box.low;
   const auto first = static_cast<std::uint32_t>(surface.positions.size());
   for (const Vec3d& corner : {Vec3d(0.0, 0.0, 0.0), Vec3d(0.3, 0.0, 0.0), Vec3d(0.0, 0.3, 0.0)}) {

@@ -141,7 +141,7 @@ TEST(IdJudge, ASourceIsMaskedAsItsCutIs) {
 TEST(IdJudge, AnOpenSurfaceIsNotJudgedFromBehind) {
   const scene::Scene terrain = lab::as_scene(lab::as_mesh(lab::make_terrain(48, 48)));
   const AgainstSource same(terrain, terrain);
-  const WorldBox box = world_box(same.asset());
+  const Box3d box = world_box(same.asset());
   run::Camera camera;
   camera.target = 0.5 * (box.low + box.high);
   camera.near_distance = 1e-3 * (box.high.x - box.low.x);

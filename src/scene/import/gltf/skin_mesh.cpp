@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <limits>
 #include <utility>
 
+#include "base/box.h"
 #include "scene/import/gltf/normals.h"
 
 namespace meshlode::scene {
@@ -83,7 +83,8 @@ struct NormalMatrix {
 };
 
 /// Whether both put every point of the box into one place, up to rounding.
-bool agree(const Mat4d& a, const Mat4d& b, const Vec3d& low, const Vec3d& high) {
+bool agree(const Mat4d& a, const Mat4d& b, const Box3d& box) {
+  const auto& [low, high] = box;
   constexpr double kRounding = 1e-6;
   double far = 0.0, size = 0.0;
   for (int r = 0; r < 3; ++r) {
@@ -130,8 +131,6 @@ MeshJoints find_joints(const SourceMesh& mesh, const std::vector<VertexWeights>&
   if (!out.has_weights || joint_count == 0) return out;
   std::vector<bool> is_used(joint_count, false);
   std::vector<Influence> influences;
-  out.low = Vec3d(std::numeric_limits<double>::infinity());
-  out.high = -out.low;
   for (std::size_t p = 0; p < mesh.primitives.size(); ++p) {
     const Primitive& primitive = mesh.primitives[p];
     std::vector<bool> is_seen(primitive.positions.size(), false);
@@ -142,8 +141,7 @@ MeshJoints find_joints(const SourceMesh& mesh, const std::vector<VertexWeights>&
         ++(weights[p].width == 0 ? out.unweighted_vertices : out.bad_vertices);
       }
       for (const Influence& each : influences) is_used[each.joint] = true;
-      out.low = glm::min(out.low, primitive.positions[v]);
-      out.high = glm::max(out.high, primitive.positions[v]);
+      out.box.add(primitive.positions[v]);
     }
   }
   for (std::uint32_t j = 0; j < joint_count; ++j) {
@@ -155,9 +153,8 @@ MeshJoints find_joints(const SourceMesh& mesh, const std::vector<VertexWeights>&
 std::optional<Mat4d> common_matrix(const MeshJoints& joints, const std::vector<Mat4d>& matrices) {
   if (joints.used.empty()) return Mat4d(1.0);
   for (const Mat4d& candidate : {Mat4d(1.0), matrices[joints.used.front()]}) {
-    const bool is_common = std::all_of(joints.used.begin(), joints.used.end(), [&](std::uint32_t j) {
-      return agree(matrices[j], candidate, joints.low, joints.high);
-    });
+    const bool is_common = std::all_of(joints.used.begin(), joints.used.end(),
+                                       [&](std::uint32_t j) { return agree(matrices[j], candidate, joints.box); });
     if (is_common) return candidate;
   }
   return std::nullopt;

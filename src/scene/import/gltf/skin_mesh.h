@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "base/box.h"
 #include "scene/import/gltf/primitive.h"
 #include "scene/scene.h"
 
@@ -21,7 +22,7 @@ struct MeshJoints {
   std::vector<std::uint32_t> used;        ///< ascending
   std::uint64_t bad_vertices = 0;         ///< that have weights which mean nothing
   std::uint64_t unweighted_vertices = 0;  ///< of primitives without weights
-  Vec3d low{0.0}, high{0.0};              ///< of the vertices
+  Box3d box;                              ///< of the vertices
 };
 [[nodiscard]] MeshJoints find_joints(const SourceMesh& mesh, const std::vector<VertexWeights>& weights,
                                      std::size_t joint_count);
