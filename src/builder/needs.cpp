@@ -28,7 +28,7 @@ constexpr std::uint64_t kKeptTriangle = 30;
 constexpr std::uint64_t kTriangle = 10;
 constexpr std::uint64_t kTriangleOfCertified = 50;
 constexpr std::uint64_t kTriangleHeld = 36;       // in the leaves of the source's tree
-constexpr std::uint64_t kTrianglePromised = 750;  // both surfaces, their trees and the samples (src/builder/promise)
+constexpr std::uint64_t kTrianglePromised = 950;  // both surfaces, their trees and the samples (src/builder/promise)
 // Of an aggregate the ways to thin it out, and pictures of them in all views.
 constexpr std::uint64_t kAggregate = 12u << 20u;
 constexpr std::uint64_t kTriangleOfAggregate = 50;
