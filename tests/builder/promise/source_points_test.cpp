@@ -61,8 +61,8 @@ TEST(SourcePoints, TheFarthestAndSomeOfAllOthersAreCarriedOn) {
     samples.push_back({i % 100, static_cast<float>(b), static_cast<float>(c), static_cast<float>(random.unit()), 0});
   }
   const std::vector<SourcePoint> before = samples;
-  const std::vector<SourcePoint> kept = five.points.thin(samples, 1);
-  // Of one place: the 64 farthest, half as many of the rest, and the outermost of five coordinates.
+  const std::vector<SourcePoint> kept = five.points.thin(samples, 512);
+  // Of one place of 512: the 64 farthest, half as many of the rest, and the outermost of five coordinates.
   ASSERT_GE(kept.size(), 96U);
   ASSERT_LE(kept.size(), 96U + 10U);
   std::vector<float> distances;
