@@ -8,7 +8,7 @@
 
 #include "base/byte_size.h"
 #include "base/memory.h"
-#include "builder/deviation/deviation.h"
+#include "builder/deviation/surface_tree.h"
 #include "builder/gap_label.h"
 #include "builder/plan/count_wedges.h"
 #include "builder/plan/plan.h"
@@ -27,7 +27,7 @@ constexpr std::uint64_t kDocumentByte = 40;
 constexpr std::uint64_t kKeptTriangle = 30;
 constexpr std::uint64_t kTriangle = 10;
 constexpr std::uint64_t kTriangleOfCertified = 50;
-constexpr std::uint64_t kTriangleHeld = 36;       // in the leaves of the source's tree
+constexpr std::uint64_t kTriangleHeld = 36;       // in leaves of trees that hold them
 constexpr std::uint64_t kTrianglePromised = 950;  // both surfaces, their trees and the samples (src/builder/promise)
 // Of an aggregate the ways to thin it out, and pictures of them in all views.
 constexpr std::uint64_t kAggregate = 12u << 20u;
@@ -130,7 +130,7 @@ MemoryEstimate estimate_memory(const scene::Scene& scene, const PipelineOptions&
     for (const scene::Primitive& primitive : mesh.primitives) estimate.always += bytes_of(primitive);
     estimate.always += kKeptTriangle * counts.triangles;
     const std::uint64_t promised = options.promise == format::Promise::kPosition ? 0 : kTrianglePromised;
-    const std::uint64_t held = is_measured && counts.triangles <= kMostHeldTriangles ? kTriangleHeld : 0;
+    const std::uint64_t held = is_measured && counts.triangles <= SurfaceTree::kFew ? kTriangleHeld : 0;
     const AttributeLayout layout = largest_layout(mesh, own);
     const std::uint64_t positions = count_wedges(mesh, {});
     const std::uint64_t wedges = layout.stride() == 0 ? positions : std::max(positions, count_wedges(mesh, layout));

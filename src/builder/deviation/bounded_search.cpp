@@ -15,6 +15,9 @@ constexpr double kEnough = 0.1;
 constexpr double kOfNoUse = 1e-3;
 /// Of the tree's extent: what floats tell apart, and as much again.
 constexpr double kSmallest = 2e-7;
+/// Of a part of the triangle whose radius is this share of its bound, all parts of the surface in reach are as near as
+/// the nearest: where two sheets lie in one place, neither is ever nearer.
+constexpr double kTie = 2e-3;
 /// Triangles of the surface that bound a part.
 constexpr std::size_t kMostBounds = 5;
 /// No division nearer to the end of an edge, as a share of it.
@@ -98,6 +101,13 @@ Highest highest_of(const LinearBounds& bounds) {
 BoundedSearch::BoundedSearch(const SurfaceTree& tree, double margin, double known)
     : tree_(&tree), margin_(margin), beyond_(std::max(margin * known, kSmallest / tree.scale())) {}
 
+BoundedSearch::BoundedSearch(const SurfaceTree& tree, double margin, std::span<const double> known, PartOf part_of)
+    : BoundedSearch(tree, margin, *std::min_element(known.begin(), known.end())) {
+  limits_.assign(known.size(), {beyond_, 0.0});
+  part_of_ = std::move(part_of);
+  know(known);
+}
+
 void BoundedSearch::add(const std::array<Vec3d, 3>& corners, TreeSlot place) {
   if (is_near_throughout(corners, place)) return;
   Part part;
@@ -124,6 +134,19 @@ void BoundedSearch::look_at(Part& part) {
 
 void BoundedSearch::know(double known) {
   beyond_ = std::max(beyond_, margin_ * known);
+}
+
+void BoundedSearch::know(std::span<const double> known) {
+  for (std::size_t i = 0; i < limits_.size(); ++i) limits_[i].beyond = std::max(limits_[i].beyond, margin_ * known[i]);
+  take_least();
+}
+
+void BoundedSearch::take_least() {
+  double least = std::numeric_limits<double>::infinity();
+  for (const Limit& limit : std::span(limits_).first(limits_.size() - 1)) least = std::min(least, limit.beyond);
+  Limit& of_none = limits_.back();
+  if (limits_.size() > 1) of_none.beyond = std::max(of_none.beyond, least);
+  beyond_ = std::min(least, of_none.beyond);
 }
 
 std::size_t BoundedSearch::run(std::size_t parts) {
@@ -156,8 +179,23 @@ void BoundedSearch::push(Part& part) {
   std::push_heap(parts_.begin(), parts_.end());
 }
 
-bool BoundedSearch::is_beyond(double distance) const {
-  return distance > beyond_ * (1.0 + kOfNoUse);
+bool BoundedSearch::is_beyond(double distance, double limit) {
+  return distance > limit * (1.0 + kOfNoUse);
+}
+
+void BoundedSearch::take(const Found& found) {
+  if (found.distance > found_.distance) found_ = found;
+  if (limits_.empty()) {
+    beyond_ = margin_ * found.distance;
+    return;
+  }
+  const std::size_t part = part_of_(tree_->triangle_at(found.place));
+  limits_[part].found = found.distance;
+  for (std::size_t i = 0; i < limits_.size(); ++i) {
+    if (i == part || part + 1 == limits_.size())
+      limits_[i].beyond = std::max(limits_[i].beyond, margin_ * found.distance);
+  }
+  take_least();
 }
 
 bool BoundedSearch::is_near_throughout(const std::array<Vec3d, 3>& corners, TreeSlot place) const {
@@ -183,10 +221,7 @@ bool BoundedSearch::measure(Corner& corner) {
   if (!hit.slot.is_valid()) return false;  // farther than floats reach: not on any real mesh
   corner.near = hit.slot;
   const double distance = std::sqrt(tree_->distance2_at(corner.at, hit.slot));
-  if (distance > beyond_) {
-    found_ = {distance, corner.at, hit.slot};
-    beyond_ = margin_ * distance;
-  }
+  if (distance > beyond_ && distance > beyond_at(hit.slot)) take({distance, corner.at, hit.slot});
   return true;
 }
 
@@ -201,12 +236,19 @@ bool BoundedSearch::is_within(Part& part) {
     bounds.of[bounds.count++] = slot;
     return true;
   };
+  const auto is_enough = [&] {
+    if (!is_beyond(part.bound)) return true;
+    for (std::size_t k = 0; k < bounds.count; ++k) {
+      if (is_beyond(part.bound, beyond_at(bounds.of[k]))) return false;
+    }
+    return !is_any_in_reach(part);
+  };
   for (const Corner& corner : part.corner) bound_by(corner.near);
   bound_by(part.near_peak);
   for (;;) {
     const auto [value, weight] = highest_of(bounds);
     part.bound = std::min(part.bound, value);
-    if (!is_beyond(part.bound)) return true;
+    if (is_enough()) return true;
     part.peak_edge = Part::kInside;
     for (std::uint8_t k = 0; k < 3; ++k) {
       if (weight[(k + 2U) % 3] == 0.0) part.peak_edge = k;
@@ -216,7 +258,27 @@ bool BoundedSearch::is_within(Part& part) {
     for (std::size_t k = 0; k < 3; ++k) peak.at += weight[k] * part.corner[k].at;
     if (!measure(peak)) return true;
     part.near_peak = peak.near;
-    if (!bound_by(peak.near)) return !is_beyond(part.bound);
+    if (!bound_by(peak.near)) return is_enough();
+  }
+}
+
+bool BoundedSearch::is_any_in_reach(const Part& part) {
+  const Vec3d middle = (part.corner[0].at + part.corner[1].at + part.corner[2].at) / 3.0;
+  double radius2 = 0.0;
+  for (const Corner& corner : part.corner) {
+    const Vec3d away = corner.at - middle;
+    radius2 = std::max(radius2, glm::dot(away, away));
+  }
+  const double radius = std::sqrt(radius2), reach = part.bound + radius + kSmallest / tree_->scale();
+  const auto is_known_to_less = [&](std::uint32_t triangle) {
+    return is_beyond(part.bound, limits_[part_of_(triangle)].beyond);
+  };
+  for (;;) {
+    const float reach2 = tree_->squared_in_frame(reach + kSmallest / tree_->scale());
+    const TreeSlot near = tree_->find_nearest_of(tree_->to_frame(middle), {TreeSlot(), reach2}, is_known_to_less).slot;
+    if (!near.is_valid() || tree_->distance2_at(middle, near) > reach * reach) return false;
+    if (radius > kTie * part.bound) return true;
+    take({part.bound, middle, near});
   }
 }
 

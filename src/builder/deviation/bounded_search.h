@@ -10,7 +10,9 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "base/vec.h"
@@ -32,12 +34,21 @@ class BoundedSearch {
   /// must outlive this. \pre margin >= 1
   BoundedSearch(const SurfaceTree& tree, double margin, double known);
 
+  /// Says which part of the surface a triangle of the tree is of.
+  using PartOf = std::function<std::size_t(std::uint32_t triangle)>;
+  /// The same where more is known of some parts of the surface than of others: what is nearest to a point says which
+  /// of `known` counts there, and each part has its own farthest point. The last one is what is of none of the others:
+  /// what is nearest to it counts for all. \pre part_of() < known.size()
+  BoundedSearch(const SurfaceTree& tree, double margin, std::span<const double> known, PartOf part_of);
+
   /// What of it may be beyond is divided by run().
   void add(const std::array<Vec3d, 3>& corners, TreeSlot place);
   /// The same, but run() looks at it, if its turn comes: no point of it is farther than `bound`.
   void add_later(const std::array<Vec3d, 3>& corners, TreeSlot place, double bound);
   /// Nothing within `margin` times that is looked for any more.
   void know(double known);
+  /// The same of each part.
+  void know(std::span<const double> known);
   /// Makes at most so many parts, and returns how many.
   std::size_t run(std::size_t parts);
   /// Nothing is left to be divided.
@@ -48,6 +59,8 @@ class BoundedSearch {
 
   /// The farthest.
   [[nodiscard]] const Found& found() const { return found_; }
+  /// That of a part.
+  [[nodiscard]] double found_of(std::size_t part) const { return limits_[part].found; }
 
  private:
   struct Corner {
@@ -71,7 +84,22 @@ class BoundedSearch {
     static constexpr std::uint8_t kInside = 3;
   };
 
-  [[nodiscard]] bool is_beyond(double distance) const;
+  /// Of a part of the surface.
+  struct Limit {
+    double beyond = 0.0;  ///< no nearer point is of use
+    double found = 0.0;   ///< the farthest; 0: there was none
+  };
+  [[nodiscard]] static bool is_beyond(double distance, double limit);
+  [[nodiscard]] bool is_beyond(double distance) const { return is_beyond(distance, beyond_); }
+  /// No point of use that this triangle is nearest to is nearer.
+  [[nodiscard]] double beyond_at(TreeSlot slot) const {
+    return limits_.empty() ? beyond_ : limits_[part_of_(tree_->triangle_at(slot))].beyond;
+  }
+  void take(const Found& found);
+  void take_least();
+  /// A part of the surface that is known to less than the bound may be nearest to some point of it. If it is too small
+  /// to be divided for that, its bound is what is found of those.
+  [[nodiscard]] bool is_any_in_reach(const Part& part);
   /// A triangle around `place` is, to all three and so to all between them.
   [[nodiscard]] bool is_near_throughout(const std::array<Vec3d, 3>& corners, TreeSlot place) const;
   [[nodiscard]] SurfaceTree::Hit find_near(const Corner& corner, float enough) const;
@@ -91,6 +119,8 @@ class BoundedSearch {
   const SurfaceTree* tree_;
   double margin_, beyond_;  ///< no nearer point is of use
   Found found_;
+  std::vector<Limit> limits_;  ///< of the surface's parts; empty: it is one
+  PartOf part_of_;
   std::vector<Part> parts_;  ///< a heap
   std::uint32_t made_ = 0;
 };

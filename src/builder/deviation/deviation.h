@@ -16,10 +16,6 @@
 
 namespace meshlode::builder {
 
-/// Of a source of at most so many triangles the tree's leaves are held, 36 bytes a triangle; of a larger one they are
-/// made whenever they are looked at. The same numbers.
-inline constexpr std::size_t kMostHeldTriangles = 1048576;
-
 /// The source's surface before the grid, relative to the mesh's origin, in object units. Built once per mesh; queries
 /// are const and may run side by side. Deterministic: same bits for any thread count, compiler and processor (I10).
 class SourceTree {

@@ -43,10 +43,7 @@ SourceTree::SourceTree(std::span<const Vec3d> positions, std::span<const std::ar
   bool has_hub = false;
   parallel_all(
       [&] {
-        impl_->tree.build(
-            {positions, triangles},
-            triangles.size() <= kMostHeldTriangles ? SurfaceTree::Leaves::kHeld : SurfaceTree::Leaves::kMade,
-            SurfaceTree::Capsules::kLater);
+        impl_->tree.build({positions, triangles}, SurfaceTree::Leaves::kHeldIfFew, SurfaceTree::Capsules::kLater);
       },
       [&] {
         impl_->vertex_of = weld(positions);

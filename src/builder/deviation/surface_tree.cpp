@@ -23,8 +23,6 @@ constexpr std::uint32_t kLeafSize = 4;
 
 // Of leaves that are made a thread keeps so many: what a group's queries come back to, in a quarter of a core's cache.
 constexpr std::size_t kCachedLeaves = 1024;
-// Trees of at most so many leaves hold their terms too, 32 bytes a triangle.
-constexpr std::size_t kFewLeaves = 16384;
 
 // How many items are parted by counting each against each, and how many by bins, on the stack.
 constexpr std::size_t kFewItems = 32, kManyItems = 4096;
@@ -140,7 +138,6 @@ void SurfaceTree::build(const Surface& surface, Leaves leaves, Capsules capsules
   surface_ = surface;
   slot_triangle_.clear();
   leaves_.clear();
-  terms_.clear();
   nodes_.clear();
   capsules_.clear();
   level_start_.clear();
@@ -163,13 +160,12 @@ void SurfaceTree::build(const Surface& surface, Leaves leaves, Capsules capsules
   slot_triangle_.resize(items.size());
   parallel_for_each_index(items.size(), kLoopGrain, [&](std::size_t i) { slot_triangle_[i] = items[i].triangle; });
   release(items);
-  if (leaves == Leaves::kHeld) {
+  if (leaves == Leaves::kHeldIfFew && surface.triangles.size() <= kFew) {
     leaves_.resize(leaf_count);
-    parallel_for_each_index(leaf_count, 1024, [&](std::size_t i) { leaves_[i] = make_leaf(i); });
-  }
-  if (leaves == Leaves::kHeld && leaf_count <= kFewLeaves) {
-    terms_.reserve(leaf_count);
-    for (const Leaf& leaf : leaves_) terms_.push_back(terms_of(leaf));
+    parallel_for_each_index(leaf_count, 1024, [&](std::size_t i) {
+      leaves_[i].triangles = make_leaf(i);
+      leaves_[i].terms = terms_of(leaves_[i].triangles);
+    });
   }
   fill_nodes();
   if (capsules == Capsules::kWhereTheyHelp && has_hub(surface.triangles, surface.positions.size())) fill_capsules();
@@ -235,7 +231,7 @@ void SurfaceTree::fill_nodes() {
         for (std::size_t axis = 0; axis < 3; ++axis) {
           float low = infinity, high = -infinity;  // no child: infinitely far from every point
           if (child < child_count && level + 1 == depth) {
-            const Leaf leaf = leaves_.empty() ? make_leaf(child) : leaves_[child];
+            const Leaf leaf = leaves_.empty() ? make_leaf(child) : leaves_[child].triangles;
             for (std::size_t j = 0; j < kLeafSize; ++j) {
               const float a = leaf.a[axis][j], b = a + leaf.ab[axis][j], c = a + leaf.ac[axis][j];
               low = std::min(low, std::min(a, std::min(b, c)));
@@ -260,7 +256,7 @@ void SurfaceTree::fill_capsules() {
   capsules_.resize(nodes_.size());
   const std::size_t depth = level_start_.size() - 1;
   const auto around_leaf = [&](std::size_t index) {
-    const Leaf leaf = leaves_.empty() ? make_leaf(index) : leaves_[index];
+    const Leaf leaf = leaves_.empty() ? make_leaf(index) : leaves_[index].triangles;
     std::array<std::array<Vec3f, 3>, kLeafSize> triangles;
     for (std::size_t k = 0; k < kLeafSize; ++k) {
       const auto at = [&](const auto& from) { return Vec3f(from[0][k], from[1][k], from[2][k]); };
@@ -287,35 +283,36 @@ void SurfaceTree::fill_capsules() {
   }
 }
 
-const SurfaceTree::CachedLeaf& SurfaceTree::made_leaf(std::uint32_t index) const {
+const SurfaceTree::HeldLeaf& SurfaceTree::made_leaf(std::uint32_t index) const {
   thread_local std::vector<CachedLeaf> cache;
   if (cache.empty()) cache.resize(kCachedLeaves);
   CachedLeaf& cached = cache[index % kCachedLeaves];
   if (cached.tree != serial_ || cached.index != index) {
-    cached.leaf = make_leaf(index);
-    cached.terms = terms_of(cached.leaf);
+    cached.held.triangles = make_leaf(index);
+    cached.held.terms = terms_of(cached.held.triangles);
     cached.tree = serial_;
     cached.index = index;
   }
-  return cached;
+  return cached.held;
 }
 
 MESHLODE_CLONED_FOR_AVX2
 SurfaceTree::Hit SurfaceTree::test_leaf(const Vec3f& point, std::uint32_t index, Hit best) const {
-  if (leaves_.empty()) {
-    const CachedLeaf& made = made_leaf(index);
-    return test_triangles(point, index, made.leaf, made.terms, best);
-  }
-  const Leaf& leaf = leaves_[index];
-  return terms_.empty() ? test_triangles(point, index, leaf, terms_of(leaf), best)
-                        : test_triangles(point, index, leaf, terms_[index], best);
+  const auto& [leaf, terms] = leaf_at(index);
+  const Lanes distance2 = distances2_to(leaf, terms, {lanes(point.x), lanes(point.y), lanes(point.z)});
+  // The first of those that are nearest, if it is nearer: a toss, so no branch.
+  const Lanes known = lanes(best.distance2);
+  const Lanes d = choose(distance2 < known, distance2, known);  // of a NaN too
+  const Lanes least = least_lane(d);
+  const std::uint32_t slot = std::min(4 * index + first_lane(d == least), size() - 1);
+  const bool is_nearer = least[0] < best.distance2;
+  return {TreeSlot(is_nearer ? slot : best.slot.value), least[0]};
 }
 
 MESHLODE_CLONED_FOR_AVX2
 SurfaceTree::Hit SurfaceTree::look_around(const std::array<Vec3f, 3>& points, TreeSlot slot) const {
   const std::uint32_t index = slot.value / kLeafSize;
-  const Leaf leaf = leaves_.empty() ? made_leaf(index).leaf : leaves_[index];
-  const LeafTerms terms = terms_.empty() ? terms_of(leaf) : terms_[index];
+  const auto& [leaf, terms] = leaf_at(index);
   Lanes farthest2 = lanes(0.0F);
   for (const Vec3f& p : points) {
     farthest2 = max_lanes(farthest2, distances2_to(leaf, terms, {lanes(p.x), lanes(p.y), lanes(p.z)}));
@@ -325,18 +322,6 @@ SurfaceTree::Hit SurfaceTree::look_around(const std::array<Vec3f, 3>& points, Tr
     if (farthest2[k] < best.distance2) best = {TreeSlot(std::min(4 * index + k, size() - 1)), farthest2[k]};
   }
   return best;
-}
-
-inline SurfaceTree::Hit SurfaceTree::test_triangles(const Vec3f& point, std::uint32_t index, const Leaf& leaf,
-                                                    const LeafTerms& terms, Hit best) const {
-  const Lanes distance2 = distances2_to(leaf, terms, {lanes(point.x), lanes(point.y), lanes(point.z)});
-  // The first of those that are nearest, if it is nearer: a toss, so no branch.
-  const Lanes known = lanes(best.distance2);
-  const Lanes d = choose(distance2 < known, distance2, known);  // of a NaN too
-  const Lanes least = least_lane(d);
-  const std::uint32_t slot = std::min(4 * index + first_lane(d == least), size() - 1);
-  const bool is_nearer = least[0] < best.distance2;
-  return {TreeSlot(is_nearer ? slot : best.slot.value), least[0]};
 }
 
 namespace {

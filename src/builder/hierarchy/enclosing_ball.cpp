@@ -14,7 +14,6 @@
 #include <vector>
 
 #include "base/box.h"
-
 #include "builder/hierarchy/enclosing_ball.h"
 
 namespace meshlode::builder {

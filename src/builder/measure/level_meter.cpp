@@ -89,11 +89,11 @@ void LevelMeter::measure_level(std::uint32_t first_group, std::uint32_t end_grou
   merge(chunks);
   merge(made);
   parallel_for_each_index(chunks.size(), 1, [&](std::size_t i) { check_units(surface, chunks[i]); });
-  finish_searches(surface, chunks);
+  finish_searches(chunks);
   surface.free_search();
   link_source();
   parallel_for_each_index(made.size(), 1, [&](std::size_t i) { check_made(surface, made[i]); });
-  finish_searches(surface, made);
+  finish_searches(made);
   const auto finish = [&] {
     finish_groups(made);
     wait_for_others(surface, chunks);
@@ -172,19 +172,21 @@ void LevelMeter::merge(std::vector<Item>& items) {
 }
 
 bool LevelMeter::is_open(Left& left) const {
-  std::vector<Raise> none;
-  left.search.know(left.shared == nullptr ? known(left.group).known : Owners(*this, *left.shared, none).known());
+  if (left.shared == nullptr) {
+    left.search.know(known(left.group).known);
+  } else {
+    std::vector<Raise> none;
+    left.search.know(Owners(*this, *left.shared, none).known_of_each());
+  }
   return !left.search.is_done();
 }
 
-std::size_t LevelMeter::go_on(const LevelSurface& surface, Left& left) const {
+std::size_t LevelMeter::go_on(Left& left) const {
   const std::size_t made = left.search.run(kPartsOfRound);
-  const BoundedSearch::Found& found = left.search.found();
-  if (found.distance == 0.0) return made;
-  if (left.shared == nullptr) {
-    left.raised.push_back({left.group, found.distance});
-  } else {
-    Owners(*this, *left.shared, left.raised).raise(surface, found.distance, surface.tree.triangle_at(found.place));
+  if (left.shared != nullptr) {
+    Owners(*this, *left.shared, left.raised).raise(left.search);
+  } else if (left.search.found().distance > 0.0) {
+    left.raised.push_back({left.group, left.search.found().distance});
   }
   return made;
 }
@@ -192,7 +194,7 @@ std::size_t LevelMeter::go_on(const LevelSurface& surface, Left& left) const {
 /// What a search left at first matters where it may be farther than all that is known by now, and seldom is. It goes on
 /// in rounds, so that what one finds ends others.
 template <class Item>
-void LevelMeter::finish_searches(const LevelSurface& surface, std::vector<Item>& items) {
+void LevelMeter::finish_searches(std::vector<Item>& items) {
   merge(items);
   std::vector<Left> open;
   const auto take_open = [&](std::vector<Left>& left) {
@@ -205,7 +207,7 @@ void LevelMeter::finish_searches(const LevelSurface& surface, std::vector<Item>&
   std::size_t left_to_all = kPartsLeftOfLevel + kRoundsOfEach * kPartsOfRound * open.size();
   for (std::size_t round = 0; round < rounds_ && !open.empty() && left_to_all > 0; ++round) {
     std::vector<std::size_t> made(open.size());
-    parallel_for_each_index(open.size(), 1, [&](std::size_t i) { made[i] = go_on(surface, open[i]); });
+    parallel_for_each_index(open.size(), 1, [&](std::size_t i) { made[i] = go_on(open[i]); });
     for (const std::size_t parts : made) left_to_all -= std::min(left_to_all, parts);
     merge(open);
     std::erase_if(open, [&](Left& left) { return !is_open(left); });
@@ -215,7 +217,7 @@ void LevelMeter::finish_searches(const LevelSurface& surface, std::vector<Item>&
     if (left.shared == nullptr) {
       count(left.group);
     } else {
-      for (std::uint32_t i = 0; i < left.shared->owner_count; ++i) count(owners_[left.shared->first_owner + i]);
+      for (const std::uint32_t g : owners_of(*left.shared)) count(g);
     }
   }
 }

@@ -18,8 +18,8 @@ namespace {
 constexpr double kPromise = 0.6;
 /// Or where the source near to one of these points is not parallel to it, within this cosine: between two sheets or two
 /// loose pieces a peak is far from all four, and may be however near they are (random scene 1061895: all four within
-/// 0.1 of what is known, a peak at 1.13). 50,000 large triangles in 20 sheets take 25 s for 12 with a share of 0.2
-/// there, the dragon the same.
+/// 0.1 of what is known, a peak at 1.13). 50,000 large triangles in 20 sheets take 20 to 25 s for 12 with a
+/// share of 0.2 there, the dragon the same.
 constexpr float kBetween = 0.7F;
 /// One that lies over more source triangles is left to a search in bounds, which costs more: with 64 crystal.glb takes
 /// 4.2 s to build for 1.6, fandisk 0.55 for 0.33; the dragon takes a twentieth less.
@@ -32,8 +32,8 @@ constexpr std::size_t kMostPiecesOfMade = 1024;
 constexpr double kDivided = 1.5, kShareOfSource = 0.25;
 /// Divided so often at most: into 4096 parts, about as many as source triangles an overlay would pass.
 constexpr std::uint32_t kMostDivisions = 6;
-/// For the middle of a part any triangle so near will do, as a share of what is known.
-constexpr double kNearMiddle = 0.25;
+/// For a point inside of a triangle any source triangle so near will do, as a share of what is known.
+constexpr double kNearPoint = 0.25;
 
 struct PartOfMade {
   TriangleCorners corners;
@@ -109,7 +109,7 @@ void LevelMeter::check_made(const LevelSurface& surface, Made& made) const {
       bool is_between = false;
       TreeSlot place = made.near[i];
       for (const Vec3d& x : {(a + b + c) / 3.0, 0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a)}) {
-        place = find_near(source, x, place, kPromise * within).slot;
+        place = find_near(source, x, place, kNearPoint * within).slot;
         most = std::max(most, distance_at(source, x, place));
         const Vec3f& normal = source_normal_[source.triangle_at(place)];
         is_between = is_between || glm::dot(normal, surface.normal[k]) < kBetween;
@@ -123,7 +123,7 @@ void LevelMeter::check_made(const LevelSurface& surface, Made& made) const {
       const PartOfMade part = parts.back();
       parts.pop_back();
       const auto& [x, y, z] = part.corners;
-      const TreeSlot near = find_near(source, (x + y + z) / 3.0, part.near, kNearMiddle * within).slot;
+      const TreeSlot near = find_near(source, (x + y + z) / 3.0, part.near, kNearPoint * within).slot;
       const TriangleCorners below = impl.corners(source.triangle_at(near));
       const double longest = longest_edge(below);
       if (is_within_of(below, longest, part.corners, within)) continue;

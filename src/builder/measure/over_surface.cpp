@@ -127,7 +127,8 @@ void LevelMeter::check_units(const LevelSurface& surface, UnitChunk& chunk) {
       const float nearest = std::min(n[0].distance, std::min(n[1].distance, n[2].distance));
       if (static_cast<double>(nearest) + (1.0 + kSlack) * longest_edge(corners) <= within) continue;
       if (!is_small && !is_at_border && is_flat(surface, corners, normal, k, within)) continue;
-      const bool is_within = overlay.is_within(corners, k[0], within);
+      // A distance over one group's part says nothing of what another one's is off by.
+      const bool is_within = overlay.is_within(corners, k[0], within, owners.is_one());
       const auto is_near_to = [&](GroupId to) {
         if (!owners.is_one() || !to.is_valid() || to.value == chunk.group) return;
         chunk.moved.push_back({chunk.group, to.value, t.id, true});
@@ -156,13 +157,16 @@ void LevelMeter::check_units(const LevelSurface& surface, UnitChunk& chunk) {
         if (bound > 0.0) chunk.searched.push_back({chunk.group, kNoId, t.id, true, bound});
         continue;
       }
-      BoundedSearch shared(surface.tree, kTolerance, owners.known());
+      if (overlay.rest().empty()) continue;
+      const auto part_of = [this, &surface, groups = owners_of(chunk.units[i])](std::uint32_t triangle) {
+        return this->part_of(groups, surface, triangle);
+      };
+      BoundedSearch shared(surface.tree, kTolerance, owners.known_of_each(), part_of);
       for (const Overlay::Rest& rest : overlay.rest()) {
         shared.add_later(rest.corners, surface.slot[rest.near], rest.bound);
       }
       (void)shared.run(kPartsPerTriangle);
-      const BoundedSearch::Found& found = shared.found();
-      if (found.distance > 0.0) owners.raise(surface, found.distance, surface.tree.triangle_at(found.place));
+      owners.raise(shared);
       if (!shared.is_done()) chunk.left.push_back({std::move(shared), chunk.group, &chunk.units[i], {}});
     }
   }

@@ -7,8 +7,9 @@
 
 namespace meshlode::builder {
 
-bool Overlay::is_within(const TriangleCorners& corners, std::uint32_t start, double known) {
+bool Overlay::is_within(const TriangleCorners& corners, std::uint32_t start, double known, bool is_raised) {
   known_ = known;
+  is_raised_ = is_raised;
   below_.clear();
   far_.clear();
   rest_.clear();
@@ -179,7 +180,7 @@ void Overlay::check(const Piece& piece) {
     const std::uint32_t nearest = tree.triangle_at(hit.slot);
     const double distance = std::sqrt(tree.distance2_at(x, hit.slot));
     far_.push_back({x, piece.triangle, nearest, distance > known_ ? distance : 0.0});
-    known_ = std::max(known_, distance);
+    if (is_raised_) known_ = std::max(known_, distance);
     bound2 = std::min(bound2, squared_bound(TriangleDistance(surface_.corners(nearest))));
   }
   if (bound2 > known_ * known_) leave(piece, std::sqrt(bound2));

@@ -93,14 +93,16 @@ class Overlay {
     Vec3d at{0.0};
     std::uint32_t below = 0;    ///< triangle of the surface
     std::uint32_t nearest = 0;  ///< likewise: near to it
-    double distance = 0.0;      ///< from the surface, where it is farther than all before; else 0
+    double distance = 0.0;      ///< from the surface, where it is farther than what is known; else 0
   };
 
   Overlay(const LinkedSurface& surface, std::size_t most_pieces) : surface_(surface), most_pieces_(most_pieces) {}
 
   /// Whether all of a triangle is within `known`. Else far() has corners that are beyond, and rest() what is open.
-  /// `start`: a triangle of the surface that is near to the first corner.
-  [[nodiscard]] bool is_within(const TriangleCorners& corners, std::uint32_t start, double known);
+  /// `start`: a triangle of the surface that is near to the first corner. `is_raised`: by a corner that is beyond
+  /// `known` is raised, and what is nearer than that is left out.
+  [[nodiscard]] bool is_within(const TriangleCorners& corners, std::uint32_t start, double known,
+                               bool is_raised = true);
 
   [[nodiscard]] std::span<const Far> far() const { return far_; }
   /// The triangles of the surface that parts of it lie over.
@@ -163,6 +165,7 @@ class Overlay {
   const LinkedSurface& surface_;
   std::size_t most_pieces_;
   double known_ = 0.0;
+  bool is_raised_ = true;
   std::deque<Piece> pieces_;   ///< as many as there ever were
   std::vector<Piece*> stack_;  ///< all of them: first those that are still to be looked at
   std::size_t size_ = 0;

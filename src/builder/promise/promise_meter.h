@@ -79,7 +79,7 @@ class PromiseMeter {
  private:
   /// Points on a group's triangles beside the corners, the middles of edges and the middle. With a sixteenth
   /// random scenes 1050482 and 1081146 had a cut at 1.08 and 1.12 times what it promises, with a quarter the first;
-  /// rock, bunny and FlightHelmet take 3 to 6% less time.
+  /// rock, bunny and FlightHelmet take 3 to 8% less time.
   static constexpr std::size_t kGroupPoints = 16384, kMostOfTriangle = 512;
   /// Points nearer than this share of the farthest are not looked at closely.
   static constexpr double kLookFrom = 0.6;

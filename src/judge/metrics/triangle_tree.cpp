@@ -102,7 +102,7 @@ Box3d box_of(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
 /// Into how many pieces a triangle would best be cut.
 double wanted_pieces(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
   const Box3d box = box_of(a, b, c);
-  const Vec3d size = box.high - box.low;
+  const Vec3d size = box.size();
   const Vec3d cross = glm::cross(b - a, c - a);
   const double area = 0.5 * std::sqrt(glm::dot(cross, cross));
   const double of_box = size.x * size.y + size.y * size.z + size.z * size.x;
@@ -124,7 +124,7 @@ Box3d box_between(const std::array<Vec3d, 3>& corners, int axis, double from, do
     }
   }
   const Box3d whole = box_of(corners[0], corners[1], corners[2]);
-  const Vec3d size = whole.high - whole.low, far = glm::max(glm::abs(whole.low), glm::abs(whole.high));
+  const Vec3d size = whole.size(), far = glm::max(glm::abs(whole.low), glm::abs(whole.high));
   const double rounding = 1e-12 * std::max({size.x, size.y, size.z}) + 1e-15 * std::max({far.x, far.y, far.z});
   return {box.low - rounding, box.high + rounding};
 }
@@ -212,7 +212,7 @@ TriangleTree::Items TriangleTree::cut_to_pieces(const Surface& surface) const {
       out.items.push_back({center_of(to_frame(box.low, box.high)), triangle});
       continue;
     }
-    const Vec3d size = box.high - box.low;
+    const Vec3d size = box.size();
     const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
     double from = box.low[axis];
     for (std::uint32_t part = 1; part <= parts; ++part) {

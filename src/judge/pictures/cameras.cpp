@@ -35,7 +35,7 @@ Box3d world_box(const run::Asset& asset) {
 std::vector<NamedCamera> adversarial_cameras(const run::Asset& asset, std::uint32_t width, std::uint32_t height) {
   const Box3d box = world_box(asset);
   const Vec3d center = 0.5 * (box.low + box.high);
-  const double size = glm::length(box.high - box.low);
+  const double size = glm::length(box.size());
   const auto make = [&](const char* name, const Vec3d& eye, const Vec3d& target) {
     NamedCamera out{name, {}};
     out.camera.eye = eye;
@@ -69,7 +69,7 @@ std::vector<NamedCamera> orbit_cameras(const run::Asset& asset, std::uint32_t co
                                        std::uint32_t height) {
   const Box3d box = world_box(asset);
   const Vec3d center = 0.5 * (box.low + box.high);
-  const double size = glm::length(box.high - box.low);
+  const double size = glm::length(box.size());
   std::vector<NamedCamera> out;
   for (std::uint32_t i = 0; i < count; ++i) {
     const double share = count > 1 ? static_cast<double>(i) / (count - 1) : 0.5;

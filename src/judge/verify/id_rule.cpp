@@ -60,7 +60,7 @@ std::vector<NamedCamera> id_cameras(const run::Asset& asset, std::uint32_t count
   if (targets.is_empty()) return out;
   const Box3d box = world_box(asset);
   const Vec3d center = 0.5 * (box.low + box.high);
-  const double size = glm::length(box.high - box.low);
+  const double size = glm::length(box.size());
   for (std::uint32_t i = 0; i < count; ++i) {
     const double turn = 2.399963229728653 * i;          // the golden angle
     const double up = 0.9 * (1.0 - (i + 0.5) / count);  // scenes stand on something: none looks from below

@@ -159,6 +159,80 @@ TEST(BoundedSearch, WhatIsKnownMeanwhileEndsIt) {
   EXPECT_NEAR(nearly.found().distance, all.found().distance, (kTolerance - 1.0) * all.found().distance);
 }
 
+/// A floor, and a step far from it that is another part: what is over the step is nearer.
+TEST(BoundedSearch, OfEachPartOfTheSurfaceTheFarthestIsFound) {
+  judge::Surface surface;
+  const auto add_strip = [&](double from, double to, double height) {
+    const auto first = static_cast<std::uint32_t>(surface.positions.size());
+    for (const Vec3d& p :
+         {Vec3d(from, -4, height), Vec3d(to, -4, height), Vec3d(to, 4, height), Vec3d(from, 4, height)})
+      surface.positions.push_back(p);
+    surface.triangles.push_back({first, first + 1, first + 2});
+    surface.triangles.push_back({first, first + 2, first + 3});
+  };
+  add_strip(-8, -4, -1.0);
+  add_strip(4, 8, -0.25);
+  const SurfaceTree tree = tree_over(surface);
+  const auto part_of = [](std::uint32_t triangle) -> std::size_t { return triangle < 2 ? 0 : 1; };
+  const Corners over_floor{Vec3d(-7, -2, 0), Vec3d(-5, -2, 0), Vec3d(-6, 2, 0)};
+  const Corners over_step{Vec3d(7, -2, 0), Vec3d(5, -2, 0), Vec3d(6, 2, 0)};
+  for (const double of_step : {0.01, 0.2, 0.3}) {
+    const std::array<double, 3> known{0.01, of_step, 0.01};
+    BoundedSearch search(tree, kTolerance, known, part_of);
+    search.add(over_floor, TreeSlot());
+    search.add(over_step, TreeSlot());
+    search.run(kWithoutEnd);
+    EXPECT_TRUE(search.is_done());
+    EXPECT_NEAR(search.found_of(0), 1.0, 2e-3);
+    if (of_step > 0.25) {
+      EXPECT_EQ(search.found_of(1), 0.0);
+    } else {
+      EXPECT_NEAR(search.found_of(1), 0.25, 5e-4);
+    }
+    EXPECT_EQ(search.found().distance, search.found_of(0));
+  }
+  // What is known of both meanwhile ends it, of one it does not.
+  BoundedSearch search(tree, kTolerance, std::array<double, 3>{0.01, 0.01, 0.01}, part_of);
+  search.add_later(over_step, TreeSlot(), 0.5);
+  search.know(std::array<double, 3>{2.0, 0.01, 0.01});
+  EXPECT_FALSE(search.is_done());
+  search.know(std::array<double, 3>{2.0, 2.0, 2.0});
+  EXPECT_TRUE(search.is_done());
+}
+
+// Also where what bounds a part of the triangle is known to more, and another one is nearest somewhere inside.
+TEST(BoundedSearch, NoPartOfTheSurfaceIsHiddenByAnother) {
+  Random random(88);
+  int hidden = 0;
+  for (int round = 0; round < 60; ++round) {
+    const judge::Surface surface = test::random_soup(random, 60, 1.0, 0.4);
+    const SurfaceTree tree = tree_over(surface);
+    const auto part_of = [](std::uint32_t triangle) -> std::size_t {
+      return triangle < 20 ? 0 : triangle < 50 ? 1 : 2;
+    };
+    const std::array<double, 3> known{0.05 + 0.1 * random.unit(), 0.3 + 0.3 * random.unit(), 0.05};
+    Corners corners;
+    for (Vec3d& p : corners) p = 1.2 * Vec3d(random.signed_unit(), random.signed_unit(), random.signed_unit());
+    BoundedSearch search(tree, kTolerance, known, part_of);
+    search.add(corners, TreeSlot());
+    search.run(kWithoutEnd);
+    ASSERT_TRUE(search.is_done());
+    for (int i = 0; i < 1000; ++i) {
+      double a = random.unit(), b = random.unit();
+      if (a + b > 1.0) a = 1.0 - a, b = 1.0 - b;
+      const Vec3d p = corners[0] + a * (corners[1] - corners[0]) + b * (corners[2] - corners[0]);
+      const SurfaceTree::Hit near = tree.find_nearest(tree.to_frame(p), {}, 0.0F);
+      const std::size_t part = part_of(tree.triangle_at(near.slot));
+      const double distance = std::sqrt(tree.distance2_at(p, near.slot));
+      const auto told_of = [&](std::size_t k) { return std::max({known[k], search.found_of(k), search.found_of(2)}); };
+      const double told = part < 2 ? told_of(part) : std::max(told_of(2), std::min(told_of(0), told_of(1)));
+      EXPECT_LE(distance, 1.001 * kTolerance * told) << "round " << round << " part " << part;
+      if (part == 0 && distance > known[0] && distance < known[1]) ++hidden;
+    }
+  }
+  EXPECT_GT(hidden, 100) << "of the part that is known to less, nearer than what is known of the other";
+}
+
 TEST(BoundedSearch, BoundsWhatItDidNotComeTo) {
   Random random(86);
   int left = 0;

@@ -46,7 +46,7 @@ TEST(SurfaceTree, LeavesThatAreMadeAnswerAsThoseThatAreHeld) {
 TEST(SurfaceTree, WhatLiesBetweenThreePointsIsNoFartherThanTheFarthestOfThem) {
   Random random(6);
   const auto anywhere = [&] { return Vec3d(random.signed_unit(), random.signed_unit(), random.signed_unit()); };
-  for (const auto leaves : {SurfaceTree::Leaves::kHeld, SurfaceTree::Leaves::kMade}) {
+  for (const auto leaves : {SurfaceTree::Leaves::kHeldIfFew, SurfaceTree::Leaves::kMade}) {
     const judge::Surface surface = test::random_soup(random, 101, 1.0, 0.5);
     SurfaceTree tree;
     tree.build({surface.positions, surface.triangles}, leaves);

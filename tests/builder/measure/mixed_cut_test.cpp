@@ -142,8 +142,37 @@ TEST(MeasureLevels, WhatNoSearchHasEndedCountsByItsBound) {
   EXPECT_GT(none.error, all.error);
 }
 
-/// As in the test before the last, where one triangle of the source lies over many ridges, and the right group's part
-/// is near to it in a gap between two of them alone.
+/// Two triangles of the source are of two groups, as their corners are. Over both groups' parts they pass a gap, and
+/// what is far over the wider one says nothing of the other.
+TEST(MeasureLevels, EachGroupOfATriangleAnswersForItsOwnPart) {
+  HandMade made;
+  made.add_group(2, true);
+  for (const std::uint32_t group : {1U, 2U}) {
+    Soup ridges;
+    for (int i = group == 1 ? 0 : 64; i < (group == 1 ? 64 : kRidges); ++i) {
+      const bool is_gap = (i >= 20 && i < 44) || (i >= 90 && i < 98);
+      if (!is_gap) ridges.push_back(ridge(i, 18 * kStep));
+    }
+    made.add_cluster(2, GroupId(group), ridges);
+  }
+  made.add_group(1, false);
+  made.add_cluster(1, GroupId(3U), strip(0, 1, 0));
+  made.add_group(1, false);
+  made.add_cluster(1, GroupId(3U), strip(1, 2, 0));
+  made.add_group(0, false);
+  made.add_cluster(0, GroupId(), strip(0, 2, 0));
+  measure(made);
+  const double left = made.dag.groups[1].error, right = made.dag.groups[2].error;
+  EXPECT_GT(left, 0.15);
+  EXPECT_LT(right, 0.1);
+  for (const double threshold : {left, right}) {
+    EXPECT_LE(test::sampled_distance(test::source_of(made.mesh), test::cut_of(made.mesh, made.dag, threshold), 400),
+              threshold * 1.002);
+  }
+}
+
+/// As in the test before the last two, where one triangle of the source lies over many ridges, and the right group's
+/// part is near to it in a gap between two of them alone.
 TEST(MeasureLevels, AGroupIsTrueWhereASearchLooksBesideItForAnotherOne) {
   for (int gap = 3; gap < kRidges; gap += 20) {
     HandMade made;
