@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # A batch goes on after a failure and exits with its worst code; folders are scanned, their inner structure is kept.
 mkdir -p in/deep
-cp "$DATA/crystal.glb" in/one.glb
-cp "$DATA/crystal.glb" in/deep/two.GLB
+cp "$DATA/city.glb" in/one.glb
+cp "$DATA/city.glb" in/deep/two.GLB
 printf 'broken' >in/broken.glb
 printf 'not a scene' >in/readme.txt
 printf 'solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid s\n' >in/one.stl

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # What cannot be meant is refused before any work, and the message says what was got.
-cp "$DATA/crystal.glb" a.glb
+cp "$DATA/city.glb" a.glb
 code build --quiet a.glb -o a.lode
 cp a.lode ../kept.lode
 echo "an empty name is none"

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Cuts, budgets and discrete chains as GLB; what does not make sense, or cannot be met, writes nothing.
-cp "$DATA/crystal.glb" a.glb
+cp "$DATA/rock.glb" a.glb
 code build --quiet a.glb -o a.lode
 code extract a.lode --error 0.01 --relative -o cut.glb
 code extract a.lode --triangles 1000 -o budget.glb

@@ -8,7 +8,7 @@ for way in "unshare -m" "unshare -rm" env; do
   $way sh -c 'mount -t tmpfs none full && umount full' 2>/dev/null && { read -ra apart <<<"$way"; break; }
 done
 [ ${#apart[@]} -ne 0 ] || skip "no file system can be mounted here"
-cp "$DATA/crystal.glb" a.glb
+cp "$DATA/city.glb" a.glb
 code build --quiet a.glb -o a.lode
 export MESHLODE
 export -f code files

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Signals, pipes that nobody reads, full devices and limits: exit 2, one line, and no file that is not whole.
 cp "$DATA/rock.glb" r.glb
-cp "$DATA/crystal.glb" a.glb
+cp "$DATA/rock.glb" a.glb
 # interrupt SIGNAL ENV_OPTION: a build that is sent a signal once it waits for some, in a thread of its own.
 interrupt() {
   : >../stderr

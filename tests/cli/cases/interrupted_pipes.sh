@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # An interrupt ends a batch that waits for the reader of a pipe, and its manifest tells of every asset that is there.
-cp "$DATA/crystal.glb" a.glb
+cp "$DATA/city.glb" a.glb
 mkfifo pipe
 # stop SIGNAL OPTION: a build that is sent a signal once its asset is there and it waits for the pipe
 stop() {

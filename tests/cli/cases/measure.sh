@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Another tier without a build: the bytes of a build with that tier, from every tier to every other.
-for scene in city crystal foliage rock terrain; do
+for scene in ${SCENES:-city foliage rock}; do
   cp "$DATA/$scene.glb" .
   for tier in qem measured certified; do
     "$MESHLODE" build --quiet "$scene.glb" -o "$scene.$tier.lode" --error-tier "$tier" || echo "no build: $scene $tier"
@@ -14,7 +14,7 @@ for scene in city crystal foliage rock terrain; do
     done
   done
 done
-rm city.* crystal.* terrain.*
+rm -f city.* crystal.* terrain.*
 # Aggregates, a codec, settings of a mesh, threads.
 same() { # options of the build
   for tier in qem certified; do

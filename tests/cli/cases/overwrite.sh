@@ -6,7 +6,7 @@ printf 'no picture, but a file of the scene' >pic.png
 printf '{"asset":{"version":"2.0"},"buffers":[{"uri":"s.bin","byteLength":36}],"bufferViews":[{"buffer":0,"byteLength":36}],
 "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"}],"images":[{"uri":"pic.png"}],
 "meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"nodes":[{"mesh":0}],"scenes":[{"nodes":[0]}],"scene":0}' >s.gltf
-cp "$DATA/crystal.glb" a.glb
+cp "$DATA/city.glb" a.glb
 cp a.glb b.lode
 ln -s s.bin link; ln s.bin hard; mkdir folder; ln -s .. folder/up
 sums() { sha256sum s.gltf s.bin pic.png a.glb b.lode; }

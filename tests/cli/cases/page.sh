@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # info --html: one file, the same for the same asset whatever the codec of its pages and the number of threads.
-cp "$DATA/crystal.glb" a.glb
+cp "$DATA/rock.glb" a.glb
 code build --quiet a.glb -o a.lode
 code build --quiet a.glb -o plain.lode --codec none
 run info --quiet a.lode --html a.html

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # sweep: never over what it reads, by whatever link; the state file leads nowhere else.
-cp "$DATA/crystal.glb" scene.glb
+cp "$DATA/city.glb" scene.glb
 cp scene.glb kept.glb
 args=(--rounds 1 --samples 200 --knobs strip-effort --quiet --jobs 1)
 code sweep scene.glb -o report "${args[@]}"

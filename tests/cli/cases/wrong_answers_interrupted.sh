@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # A batch that is interrupted or killed has its manifest and its JUnit file: what was built, and the rest as skipped.
-mkdir in; cp "$DATA/crystal.glb" in/a.glb; cp "$DATA/crystal.glb" in/b.glb; cp "$DATA/rock.glb" in/c.glb; cp "$DATA/rock.glb" in/d.glb
+mkdir in; cp "$DATA/city.glb" in/a.glb; cp "$DATA/city.glb" in/b.glb; cp "$DATA/crystal.glb" in/c.glb; cp "$DATA/rock.glb" in/d.glb
 # The third takes long enough to be caught.
 slow=(--preset best --error-tier certified --jobs 1)
 # stop SIGNAL ARGS…: a batch that is sent a signal once its manifest tells of two assets

@@ -6,7 +6,7 @@ head -c 2000000 /dev/zero | tr '\0' '0' | sed 's/0\(0\)/\1,/g' >zeros
   printf '0],"buffers":[{"uri":"b.bin","byteLength":36}],"bufferViews":[{"buffer":0,"byteLength":36}],"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]}],"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"nodes":[{"mesh":0}],"scenes":[{"nodes":[0]}],"scene":0}'
 } >x.gltf
 printf '\0\0\0\0\0\0\0\0\0\0\0\0\0\0\200\77\0\0\0\0\0\0\0\0\0\0\0\0\0\0\200\77\0\0\0\0' >b.bin
-cp "$DATA/rock.glb" rock.glb
+cp "$DATA/city.glb" city.glb
 code build --quiet x.gltf -o x.lode
 ulimit -c 0
 done_in=0 refused=0
@@ -23,7 +23,7 @@ try() {
 for limit in $(seq 60000 20000 300000); do
   try build --quiet x.gltf -o y.lode --jobs 1
   try build --quiet x.gltf -o y.lode --jobs 2 --aggregate auto
-  try build --quiet rock.glb -o y.lode --jobs 16
+  try build --quiet city.glb -o y.lode --jobs 16
   try plan x.gltf
   try info x.lode
   try render --quiet x.lode -o x.png --size 16x16
