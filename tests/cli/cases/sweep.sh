@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # sweep: a report of a small scene; measured once, it is the same when asked for again; killed, it goes on.
-cp "$DATA/city.glb" a.glb
+cp "$DATA/crystal.glb" a.glb
 code sweep a.glb -o report --quiet --rounds 2 --samples 500 --budget 2s
 "$JSON_CHECK" "$SCHEMAS/sweep.schema.json" <report/sweep.json
 cp report/sweep.csv first.csv
