@@ -134,6 +134,7 @@ class LevelMeter {
   // over_surface.cpp: the source against the surface
   void ask_units(const LevelSurface& surface, UnitChunk& chunk) const;
   void check_units(const LevelSurface& surface, UnitChunk& chunk);
+  [[nodiscard]] GroupId owner_of(const SourceUnits::Unit& unit, const SourceUnits::Triangle& triangle) const;
   void mark_seen(const LevelSurface& surface, std::uint32_t triangle, const Vec3f& normal, bool is_border);
   [[nodiscard]] bool is_flat(const LevelSurface& surface, const TriangleCorners& corners, const Vec3f& normal,
                              const std::array<std::uint32_t, 3>& near, double within) const;

@@ -98,6 +98,14 @@ bool LevelMeter::is_flat(const LevelSurface& surface, const TriangleCorners& cor
   return true;
 }
 
+/// The group of the level that all of its corners belong to, if there is one.
+GroupId LevelMeter::owner_of(const SourceUnits::Unit& unit, const SourceUnits::Triangle& triangle) const {
+  const auto group = [&](std::size_t k) {
+    return dag_.clusters[owner_[unit.first_vertex + triangle.corner[k]]].coarser_group;
+  };
+  return is_of_level(group(0).value) && group(1) == group(0) && group(2) == group(0) ? group(0) : GroupId();
+}
+
 void LevelMeter::check_units(const LevelSurface& surface, UnitChunk& chunk) {
   const SourceTree::Impl& source = source_.impl();
   const bool is_small = source.triangles.size() <= kFewSource;
@@ -129,9 +137,10 @@ void LevelMeter::check_units(const LevelSurface& surface, UnitChunk& chunk) {
       if (!is_small && !is_at_border && is_flat(surface, corners, normal, k, within)) continue;
       // A distance over one group's part says nothing of what another one's is off by.
       const bool is_within = overlay.is_within(corners, k[0], within, owners.is_one());
+      const GroupId owner = owners.is_one() ? GroupId(chunk.group) : owner_of(unit, t);
       const auto is_near_to = [&](GroupId to) {
-        if (!owners.is_one() || !to.is_valid() || to.value == chunk.group) return;
-        chunk.moved.push_back({chunk.group, to.value, t.id, true});
+        if (!owner.is_valid() || !to.is_valid() || to == owner) return;
+        chunk.moved.push_back({owner.value, to.value, t.id, true});
       };
       for (const std::uint32_t below : overlay.below()) {
         if (!is_small) mark_seen(surface, below, normal, is_at_border);
@@ -147,14 +156,14 @@ void LevelMeter::check_units(const LevelSurface& surface, UnitChunk& chunk) {
         const TreeSlot back = find_near(source.tree, foot, source.place_of(t.id), owners.known()).slot;
         owners.raise(surface, distance_at(source.tree, foot, back), far.below);
       }
+      double bound = 0.0;
+      for (const Overlay::Rest& rest : overlay.rest()) bound = std::max(bound, rest.bound);
+      if (bound > 0.0 && owner.is_valid()) chunk.searched.push_back({owner.value, kNoId, t.id, true, bound});
       if (owners.is_one()) {
         ++searched;
-        double bound = 0.0;
         for (const Overlay::Rest& rest : overlay.rest()) {
           search.add_later(rest.corners, surface.slot[rest.near], rest.bound);
-          bound = std::max(bound, rest.bound);
         }
-        if (bound > 0.0) chunk.searched.push_back({chunk.group, kNoId, t.id, true, bound});
         continue;
       }
       if (overlay.rest().empty()) continue;

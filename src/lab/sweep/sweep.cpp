@@ -177,13 +177,19 @@ class Sweep {
   }
 
   /// What is not measured yet of a group in this round.
-  [[nodiscard]] bool is_missing(const Group& group) const {
+  [[nodiscard]] bool is_unmeasured(const Group& group) const {
     if (!state_.find(MeasurementKind::kBuild, group.key, round_)) return true;
     if (!state_.find(MeasurementKind::kAsset, group.key)) return true;
     return std::any_of(group.points.begin(), group.points.end(), [&](std::size_t p) {
-      return !find_measured(MeasurementKind::kDraw, key_of(p), 0) ||
+      return !state_.find(MeasurementKind::kDraw, key_of(p), 0) ||
              !state_.find(MeasurementKind::kFrames, key_of(p), round_);
     });
+  }
+  /// Or a picture of it is gone.
+  [[nodiscard]] bool is_missing(const Group& group) const {
+    return is_unmeasured(group) || std::any_of(group.points.begin(), group.points.end(), [&](std::size_t p) {
+             return !find_measured(MeasurementKind::kDraw, key_of(p), 0);
+           });
   }
 
   [[nodiscard]] bool has_failed(const Group& group) const {
@@ -209,7 +215,8 @@ class Sweep {
 
   Status do_group(const Group& group) {
     if (!is_missing(group) || has_failed(group)) return Ok{};
-    if (options_.budget > 0.0 && spent() + expected(group, round_) > options_.budget) return Ok{};
+    const bool is_beyond_budget = options_.budget > 0.0 && spent() + expected(group, round_) > options_.budget;
+    if (is_beyond_budget && is_unmeasured(group)) return Ok{};  // the report needs the pictures of what is measured
     tell(group);
     const bool is_baseline = group.key.empty();
     const fs::path file = work_.path() / (is_baseline ? "baseline.lode" : "point.lode");

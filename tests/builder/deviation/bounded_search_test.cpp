@@ -233,6 +233,26 @@ TEST(BoundedSearch, NoPartOfTheSurfaceIsHiddenByAnother) {
   EXPECT_GT(hidden, 100) << "of the part that is known to less, nearer than what is known of the other";
 }
 
+/// Of two sheets in one place neither is ever nearer, however often the triangle is divided.
+TEST(BoundedSearch, SheetsInOnePlaceAnswerBoth) {
+  judge::Surface surface;
+  for (const double height : {-1.0, -1.0 - 1e-9}) {
+    const auto first = static_cast<std::uint32_t>(surface.positions.size());
+    for (const Vec3d& p : {Vec3d(-8, -8, height), Vec3d(8, -8, height), Vec3d(0, 8, height)}) {
+      surface.positions.push_back(p);
+    }
+    surface.triangles.push_back({first, first + 1, first + 2});
+  }
+  const SurfaceTree tree = tree_over(surface);
+  const auto part_of = [](std::uint32_t triangle) { return std::size_t{triangle}; };
+  BoundedSearch search(tree, kTolerance, std::array<double, 3>{0.5, 0.1, 0.1}, part_of);
+  search.add({Vec3d(-1, -1, 0), Vec3d(1, -1, 0), Vec3d(0, 1, 0.25)}, TreeSlot());
+  EXPECT_LT(search.run(kWithoutEnd), 1000U);
+  EXPECT_TRUE(search.is_done());
+  EXPECT_NEAR(search.found_of(0), 1.25, 0.005);
+  EXPECT_NEAR(search.found_of(1), 1.25, 0.005);
+}
+
 TEST(BoundedSearch, BoundsWhatItDidNotComeTo) {
   Random random(86);
   int left = 0;

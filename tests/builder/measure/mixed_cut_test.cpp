@@ -171,31 +171,47 @@ TEST(MeasureLevels, EachGroupOfATriangleAnswersForItsOwnPart) {
   }
 }
 
-/// As in the test before the last two, where one triangle of the source lies over many ridges, and the right group's
-/// part is near to it in a gap between two of them alone.
+/// Where one triangle of the source lies over many ridges, as in the test of what no search has ended, and the right
+/// group's part is near to it in a gap between two of them alone. `is_shared`: what the triangle is in is of both
+/// groups.
+HandMade right_part_in_a_gap(int gap, bool is_shared) {
+  HandMade made;
+  const std::uint32_t level = is_shared ? 2 : 1;
+  made.add_group(level, true);
+  Soup ridges;
+  for (int i = 0; i < kRidges; ++i) {
+    if (i != gap && i != gap + 1) ridges.push_back(ridge(i, 18 * kStep));
+    if (ridges.size() < 64) continue;
+    made.add_cluster(level, GroupId(1U), ridges);
+    ridges.clear();
+  }
+  made.add_cluster(level, GroupId(1U), ridges + strip(-1, -0.5, 20 * kStep));  // known: 20 steps
+  made.add_cluster(level, GroupId(2U), strip(gap * kWidth, (gap + 2) * kWidth, 4 * kStep) + strip(5, 6, 1));
+  const Soup of_left = strip(0, 2, 0) + strip(-1, -0.5, 0), of_right = strip(5, 6, 0);
+  const GroupId own = is_shared ? GroupId(3U) : GroupId();
+  made.add_group(level - 1, false);
+  made.add_cluster(level - 1, own, of_left);
+  made.add_group(level - 1, false);
+  made.add_cluster(level - 1, own, of_right);
+  if (is_shared) {
+    made.add_group(0, false);
+    made.add_cluster(0, GroupId(), of_left + of_right);
+  }
+  return made;
+}
+
 TEST(MeasureLevels, AGroupIsTrueWhereASearchLooksBesideItForAnotherOne) {
-  for (int gap = 3; gap < kRidges; gap += 20) {
-    HandMade made;
-    made.add_group(1, true);
-    Soup ridges;
-    for (int i = 0; i < kRidges; ++i) {
-      if (i != gap && i != gap + 1) ridges.push_back(ridge(i, 18 * kStep));
-      if (ridges.size() < 64) continue;
-      made.add_cluster(1, GroupId(1U), ridges);
-      ridges.clear();
+  for (const bool is_shared : {false, true}) {
+    for (int gap = 3; gap < kRidges; gap += 20) {
+      HandMade made = right_part_in_a_gap(gap, is_shared);
+      measure(made);
+      const double left = made.dag.groups[1].error;
+      EXPECT_NEAR(made.dag.groups[2].error, 1.0, 1e-9);
+      EXPECT_GT(left, 22 * kStep);
+      EXPECT_LE(test::sampled_distance(test::source_of(made.mesh), test::cut_of(made.mesh, made.dag, left), 400),
+                left * 1.002)  // searches go on to what is so much farther
+          << gap << (is_shared ? " of both groups" : "");
     }
-    made.add_cluster(1, GroupId(1U), ridges + strip(-1, -0.5, 20 * kStep));  // known: 20 steps
-    made.add_cluster(1, GroupId(2U), strip(gap * kWidth, (gap + 2) * kWidth, 4 * kStep) + strip(2, 3, 1));
-    made.add_group(0, false);
-    made.add_cluster(0, GroupId(), strip(0, 2, 0) + strip(-1, -0.5, 0));
-    made.add_group(0, false);
-    made.add_cluster(0, GroupId(), strip(2, 3, 0));
-    measure(made);
-    const double left = made.dag.groups[1].error;
-    EXPECT_NEAR(made.dag.groups[2].error, 1.0, 1e-9);
-    EXPECT_GT(left, 22 * kStep);
-    EXPECT_LE(test::sampled_distance(test::source_of(made.mesh), test::cut_of(made.mesh, made.dag, left), 400),
-              left * 1.002);  // searches go on to what is so much farther
   }
 }
 

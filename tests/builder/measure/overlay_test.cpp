@@ -103,6 +103,24 @@ TEST(Overlay, APeakBetweenCornersThatAreNearIsFound) {
   EXPECT_GE(most, 0.999 * sampled(sheet, t));
 }
 
+/// Two valleys, the deeper one first: what it is off by says nothing of what another group made, the other one.
+TEST(Overlay, WhatIsKnownMayStayAsItIs) {
+  const Sheet sheet = lattice(8, [](const Vec3d& p) { return p.x == 0.25 ? -0.2 : p.x == 0.75 ? -0.05 : 0.0; });
+  const LinkedSurface linked = sheet.linked();
+  Overlay overlay(linked, 96);
+  const TriangleCorners t{Vec3d(0.05, 0.4, 0.0), Vec3d(0.95, 0.45, 0.0), Vec3d(0.5, 0.6, 0.0)};
+  for (const bool is_raised : {true, false}) {
+    EXPECT_FALSE(overlay.is_within(t, nearest(sheet, t[0]), 0.01, is_raised));
+    double first = 0.0, second = 0.0;
+    for (const Overlay::Far& far : overlay.far()) {
+      double& most = far.at.x < 0.5 ? first : second;
+      most = std::max(most, far.distance);
+    }
+    EXPECT_GT(first, 0.05);
+    EXPECT_EQ(second > 0.03, !is_raised) << second;
+  }
+}
+
 TEST(Overlay, WhatIsWithinIsAndWhatIsFarIsAsFar) {
   SplitMix64 random(7);
   const auto unit = [&] { return random.unit(); };

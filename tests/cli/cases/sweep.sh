@@ -15,6 +15,13 @@ gone=$(ls report/pictures | head -n 1)
 rm "report/pictures/$gone"
 code sweep a.glb -o report --quiet --rounds 2 --samples 500 --budget 2s
 [ -s "report/pictures/$gone" ] && cmp first.csv report/sweep.csv && ls -A report
+# So are all where nothing more may be measured.
+cp "$DATA/city.glb" city.glb
+code sweep city.glb -o short --quiet --rounds 1 --samples 200 --budget 1s
+ls short/pictures >drawn.txt
+rm short/pictures/*
+code sweep city.glb -o short --quiet --rounds 1 --samples 200 --budget 1s
+ls short/pictures | cmp - drawn.txt && echo "drawn again"
 # What is recommended keeps what was wished.
 json sweep sweep a.glb -o report --rounds 2 --samples 500 --budget 2s --want 'deviation<=1, bytes min' --format json
 # Killed twice on its way: nothing that was finished is measured again, and the rest is.
