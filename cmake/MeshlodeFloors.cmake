@@ -127,12 +127,13 @@ function(meshlode_compile_quickly name)
 endfunction()
 
 # meshlode_add_test(NAME SOURCES a_test.cpp ... FLOORS ... [LIBS ...] [LABELS unit property ...] [TIMEOUT seconds]
-#                   [SANITIZED] [ALONE a_test.cpp ...])
+#                   [SANITIZED] [SLOW Suite.Case ...] [SLOW_SANITIZED Suite.Case ...] [ALONE a_test.cpp ...])
 # One GoogleTest program per room or property; ctest runs each GoogleTest case on its own line. SANITIZED: tools/test.sh
 # runs it under sanitizers too, as it does everything labelled malformed: for rooms whose own arithmetic makes indices.
-# Programs labelled slow are built by the target slow_tests alone.
+# Programs labelled slow are built by the target slow_tests alone. SLOW: regular expressions for the beginnings of cases
+# that are labelled slow in a program that is not; SLOW_SANITIZED: likewise, under sanitizers. tools/test.sh --all runs them.
 function(meshlode_add_test name)
-  cmake_parse_arguments(arg "SANITIZED" "TIMEOUT" "SOURCES;FLOORS;LIBS;LABELS;ALONE" ${ARGN})
+  cmake_parse_arguments(arg "SANITIZED" "TIMEOUT" "SOURCES;FLOORS;LIBS;LABELS;ALONE;SLOW;SLOW_SANITIZED" ${ARGN})
   add_executable(${name} ${arg_SOURCES})
   meshlode_compile_alone(${arg_ALONE})
   meshlode_compile_quickly(${name})
@@ -162,8 +163,21 @@ function(meshlode_add_test name)
                        PROPERTIES TIMEOUT ${arg_TIMEOUT} SKIP_REGULAR_EXPRESSION "\\[  SKIPPED \\]")
   # gtest_discover_tests takes lists apart, so that a second label would be lost: labels are set after the discovery.
   set(labels_file "${CMAKE_CURRENT_BINARY_DIR}/${name}_labels.cmake")
+  set(slow ${arg_SLOW})
+  if(MESHLODE_SANITIZE)
+    list(APPEND slow ${arg_SLOW_SANITIZED})
+  endif()
+  set(slow_labels)
+  if(slow)
+    string(CONCAT slow_labels
+        "  foreach(slow IN ITEMS ${slow})\n    set(slow_cases \${${name}_cases})\n"
+        "    list(FILTER slow_cases INCLUDE REGEX \"^\${slow}\")\n    if(NOT slow_cases)\n"
+        "      message(FATAL_ERROR \"${name}: no case is slow by \${slow}\")\n    endif()\n"
+        "    set_tests_properties(\${slow_cases} PROPERTIES LABELS \"${arg_LABELS};slow\")\n  endforeach()\n")
+  endif()
   file(WRITE "${labels_file}"
        "if(${name}_cases)\n  set_tests_properties(\${${name}_cases} PROPERTIES LABELS \"${arg_LABELS}\")\n"
+       "${slow_labels}"
        "elseif(NOT EXISTS \"${CMAKE_CURRENT_BINARY_DIR}/${name}\")\n"
        "  set_tests_properties(${name}_NOT_BUILT PROPERTIES LABELS \"${arg_LABELS}\")\nendif()\n")
   set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES "${labels_file}")

@@ -4,7 +4,7 @@
 # need for themselves for --all and --all=GROUP alone), then
 #   1. a release build and its tests (--all: the long ones too; --all=GROUP: those of them whose names have GROUP in them),
 #   2. a sanitized core, built by clang with address and undefined behaviour sanitizers: the programs that read hostile
-#      bytes and those of the rooms that do arithmetic on indices (label `sanitized`; --all: every program),
+#      bytes and those of the rooms that do arithmetic on indices (label `sanitized`, without what is `slow`; --all: every program),
 #   3. GCC against clang: the optimised program of part 1 and the sanitized one of part 2 must build assets with equal
 #      content hashes (I10),
 #   4. the form of the sources (tools/format.sh), and clang-tidy over those that changed (tools/tidy.sh; --all: over all).
@@ -71,7 +71,7 @@ if [ $all = yes ]; then
   sanitized_targets=(all slow_tests) sanitized_vulkan=ON sanitized_filter=(-LE "models|install" -E TwoThousandScenes)
 else
   # Of the program what compare_compilers.sh asks of it; Vulkan is not run here.
-  sanitized_targets=(sanitized_core meshlode_cli) sanitized_vulkan=OFF sanitized_filter=(-L sanitized)
+  sanitized_targets=(sanitized_core meshlode_cli) sanitized_vulkan=OFF sanitized_filter=(-L sanitized -LE slow)
 fi
 build_sanitized() {
   cmake --preset sanitize -DMESHLODE_VULKAN=$sanitized_vulkan -DMESHLODE_UNITY=ON &&

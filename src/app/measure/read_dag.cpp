@@ -72,6 +72,9 @@ Status read_pages(const run::Asset& asset, MeshId mesh, LodDag& dag) {
       cluster.triangle_count = decoded.triangle_count;
       append_vertices(decoded, attributes, dag);
       dag.triangles.insert(dag.triangles.end(), decoded.triangles.begin(), decoded.triangles.end());
+      if (record.material != format::kNone) continue;
+      dag.triangle_material.insert(dag.triangle_material.end(), decoded.triangle_material.begin(),
+                                   decoded.triangle_material.end());
     }
   }
   return Ok{};
@@ -118,6 +121,7 @@ Result<LodDag> read_dag(const run::Asset& asset, MeshId mesh, const AttributeLay
   dag.vertex_position.reserve(vertices);
   dag.vertex_attributes.reserve(vertices * layout.stride());
   dag.triangles.reserve(triangles);
+  if (record.material == format::kNone) dag.triangle_material.reserve(triangles);
   TRY(read_pages(asset, mesh, dag));
   return dag;
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstring>
+#include <functional>
 #include <numeric>
 #include <span>
 #include <string>
@@ -32,9 +33,21 @@ std::size_t least_turn(const Triangle& t) {
   return best;
 }
 
-/// The triangles of one cluster in the order of the places and attributes of their vertices.
-void order_cluster(const LodDag& dag, const DagCluster& cluster, std::size_t stride,
-                   std::vector<std::array<std::uint8_t, 3>>& triangles) {
+/// The materials of a cluster's triangles, by the keys that these are ordered by.
+void order_materials(const LodDag& dag, const DagCluster& cluster, std::span<const std::uint32_t> keys,
+                     std::vector<std::uint32_t>& materials) {
+  std::array<std::pair<std::uint32_t, std::uint32_t>, 256> of_key;
+  for (std::uint32_t t = 0; t < cluster.triangle_count; ++t) {
+    of_key[t] = {keys[t], dag.triangle_material[cluster.first_triangle + t]};
+  }
+  std::sort(of_key.begin(), of_key.begin() + cluster.triangle_count);
+  for (std::uint32_t t = 0; t < cluster.triangle_count; ++t) {
+    materials[cluster.first_triangle + t] = of_key[t].second;
+  }
+}
+
+/// The triangles of one cluster in the order of the places and attributes of their vertices, then of their materials.
+void order_cluster(const LodDag& dag, const DagCluster& cluster, std::size_t stride, CanonicalForm& form) {
   struct Vertex {
     std::uint64_t xy;  // both as numbers that order as the coordinates do, and so is z
     std::uint32_t z, local;
@@ -66,11 +79,12 @@ void order_cluster(const LodDag& dag, const DagCluster& cluster, std::size_t str
     const std::uint32_t a = rank[local[0]], b = rank[local[1]], c = rank[local[2]];
     keys[t] = std::min({a << 16U | b << 8U | c, b << 16U | c << 8U | a, c << 16U | a << 8U | b});
   }
+  if (!form.triangle_material.empty()) order_materials(dag, cluster, keys, form.triangle_material);
   std::sort(keys.begin(), keys.begin() + cluster.triangle_count);
   for (std::uint32_t t = 0; t < cluster.triangle_count; ++t) {
     for (std::size_t k = 0; k < 3; ++k) {
       const Vertex& vertex = order[keys[t] >> (16U - 8U * k) & 0xFFU];
-      triangles[cluster.first_triangle + t][k] = static_cast<std::uint8_t>(vertex.local);
+      form.triangles[cluster.first_triangle + t][k] = static_cast<std::uint8_t>(vertex.local);
     }
   }
 }
@@ -235,9 +249,12 @@ Result<CanonicalForm> canonical_form(const PreparedMesh& mesh, const LodDag& dag
   }
   CanonicalForm form;
   form.triangles.resize(dag.triangles.size());
-  parallel_for_each_index(dag.clusters.size(), 16, [&](std::size_t c) {
-    order_cluster(dag, dag.clusters[c], mesh.layout.stride(), form.triangles);
-  });
+  const std::vector<std::uint32_t>& materials = dag.triangle_material;
+  const bool is_mixed =
+      std::adjacent_find(materials.begin(), materials.end(), std::not_equal_to<>()) != materials.end();
+  if (is_mixed) form.triangle_material.resize(materials.size());
+  parallel_for_each_index(dag.clusters.size(), 16,
+                          [&](std::size_t c) { order_cluster(dag, dag.clusters[c], mesh.layout.stride(), form); });
   const std::vector<std::uint32_t> of_source = number_positions(mesh, dag, form);
   TRY(match_level0(mesh, dag, of_source, form));
   return form;

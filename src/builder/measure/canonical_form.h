@@ -18,6 +18,8 @@ struct CanonicalForm {
   /// LodDag::triangles with each cluster's in an order of their own, each from its first corner on: by place on the
   /// grid, then by attributes.
   std::vector<std::array<std::uint8_t, 3>> triangles;
+  /// LodDag::triangle_material in their order; none where all are equal.
+  std::vector<std::uint32_t> triangle_material;
   std::vector<std::uint32_t> position_of_vertex;  ///< the same for all vertices of one place on the grid
   std::uint32_t position_count = 0;
   /// Per source triangle: the triangle of level 0 that it became, and that one's vertices, corner by corner.

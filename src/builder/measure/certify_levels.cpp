@@ -54,9 +54,11 @@ struct SearchedCluster {
 
 class Certifier {
  public:
-  Certifier(const PreparedMesh& mesh, SourceTree source, const CanonicalForm& form, LodDag& dag)
+  Certifier(const PreparedMesh& mesh, SourceTree source, const CanonicalForm& form, std::span<const double> least,
+            LodDag& dag)
       : mesh_(mesh),
         form_(form),
+        least_(least),
         dag_(dag),
         source_(std::move(source)),
         attributes_(source_, mesh, form, dag),
@@ -87,7 +89,7 @@ class Certifier {
 
   void certify(std::uint32_t id) {
     DagGroup& group = dag_.groups[id];
-    double floor = mesh_.level0_deviation;
+    double floor = std::max(mesh_.level0_deviation, least_.empty() ? 0.0 : least_[id]);
     std::vector<std::uint32_t> members(group.cluster_count);
     for (std::uint32_t i = 0; i < group.cluster_count; ++i) {
       members[i] = group.first_cluster + i;
@@ -112,6 +114,7 @@ class Certifier {
 
   const PreparedMesh& mesh_;
   const CanonicalForm& form_;
+  std::span<const double> least_;
   LodDag& dag_;
   SourceTree source_;
   GroupAttributes attributes_;
@@ -121,8 +124,9 @@ class Certifier {
 
 }  // namespace
 
-void certify_levels(const PreparedMesh& mesh, SourceTree source, const CanonicalForm& form, LodDag& dag) {
-  Certifier(mesh, std::move(source), form, dag).run();
+void certify_levels(const PreparedMesh& mesh, SourceTree source, const CanonicalForm& form,
+                    std::span<const double> least, LodDag& dag) {
+  Certifier(mesh, std::move(source), form, least, dag).run();
 }
 
 }  // namespace meshlode::builder

@@ -29,10 +29,11 @@ std::vector<std::uint32_t> level0_clusters(CanonicalForm& form) {
 }  // namespace
 
 LevelMeter::LevelMeter(const PreparedMesh& mesh, SourceTree source, CanonicalForm& form, double margin,
-                       std::size_t rounds, LodDag& dag)
+                       std::size_t rounds, std::span<const double> least, LodDag& dag)
     : mesh_(mesh),
       margin_(margin),
       rounds_(rounds),
+      least_(least),
       form_(form),
       dag_(dag),
       source_(std::move(source)),
@@ -112,7 +113,7 @@ void LevelMeter::begin_level(std::uint32_t first_group, std::uint32_t end_group)
     const DagGroup& group = dag_.groups[g];
     if (group.is_terminal) continue;
     Known& k = known(g);
-    k.floor = mesh_.level0_deviation;
+    k.floor = std::max(mesh_.level0_deviation, least_.empty() ? 0.0 : least_[g]);
     for (std::uint32_t c = group.first_cluster; c < group.first_cluster + group.cluster_count; ++c) {
       for (const std::uint32_t u : units_of_[c]) pairs.emplace_back(u, g);
       units_of_[c] = {};

@@ -40,9 +40,9 @@ class LevelMeter {
  public:
   /// `source` is the tree over the mesh's exact triangles; `form` is the DAG's, whose triangles are in its order. What
   /// it is given must outlive it, but for level0_of_source, which is freed. What searches have not ended in so many
-  /// rounds counts by its bound.
+  /// rounds counts by its bound. `least`: of measure_levels().
   LevelMeter(const PreparedMesh& mesh, SourceTree source, CanonicalForm& form, double margin, std::size_t rounds,
-             LodDag& dag);
+             std::span<const double> least, LodDag& dag);
 
   /// All groups of a level; finer ones are measured.
   void measure_level(std::uint32_t first_group, std::uint32_t end_group);
@@ -179,6 +179,7 @@ class LevelMeter {
   const PreparedMesh& mesh_;
   double margin_;
   std::size_t rounds_;
+  std::span<const double> least_;
   const CanonicalForm& form_;
   LodDag& dag_;
   SourceTree source_;

@@ -5,12 +5,14 @@
 #include <limits>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "base/parallel.h"
 #include "base/release.h"
 #include "builder/deviation/deviation.h"
 #include "builder/measure/canonical_form.h"
 #include "builder/measure/certify_levels.h"
+#include "builder/measure/material_errors.h"
 #include "builder/measure/measure_levels.h"
 
 namespace meshlode::builder {
@@ -53,10 +55,17 @@ Status measure(const PreparedMesh& mesh, format::ErrorTier tier, LodDag& dag, co
   if (!form) return form.error();
   on_form();
   dag.triangles.swap(form->triangles);
+  std::vector<double> least;
+  if (!form->triangle_material.empty()) {
+    dag.triangle_material.swap(form->triangle_material);
+    least = material_errors(mesh, dag);
+    dag.triangle_material.swap(form->triangle_material);
+    release(form->triangle_material);
+  }
   if (tier == format::ErrorTier::kCertified) {
-    certify_levels(mesh, *std::move(source), *form, dag);
+    certify_levels(mesh, *std::move(source), *form, least, dag);
   } else {
-    measure_levels(mesh, *std::move(source), *form, kMeasuredMargin, dag);
+    measure_levels(mesh, *std::move(source), *form, kMeasuredMargin, dag, kMostRounds, least);
   }
   dag.triangles.swap(form->triangles);
   return Ok{};

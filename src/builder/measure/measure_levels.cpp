@@ -8,8 +8,8 @@
 namespace meshlode::builder {
 
 void measure_levels(const PreparedMesh& mesh, SourceTree source, CanonicalForm& form, double margin, LodDag& dag,
-                    std::size_t rounds) {
-  LevelMeter meter(mesh, std::move(source), form, margin, rounds, dag);
+                    std::size_t rounds, std::span<const double> least) {
+  LevelMeter meter(mesh, std::move(source), form, margin, rounds, least, dag);
   for (std::size_t end = dag.groups.size(); end > 0;) {
     std::size_t begin = end - 1;
     while (begin > 0 && dag.groups[begin - 1].level == dag.groups[begin].level) --begin;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 
 #include "builder/deviation/deviation.h"
 #include "builder/lod_dag.h"
@@ -19,8 +20,8 @@ constexpr std::size_t kMostRounds = 256;
 /// Fills deviation, error, normal_deviation and uv_deviation of every group that is not terminal. The mesh has its
 /// exact triangles, and `source` is the tree over them. `form` is the DAG's, whose triangles are in its order;
 /// level0_of_source is freed. `margin` >= 1: an error is so many times what was found. `rounds`: what searches have not
-/// ended by then counts by its bound.
+/// ended by then counts by its bound. `least`: per group, its error is no less; or none.
 void measure_levels(const PreparedMesh& mesh, SourceTree source, CanonicalForm& form, double margin, LodDag& dag,
-                    std::size_t rounds = kMostRounds);
+                    std::size_t rounds = kMostRounds, std::span<const double> least = {});
 
 }  // namespace meshlode::builder

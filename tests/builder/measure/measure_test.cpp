@@ -28,14 +28,31 @@ struct Built {
 };
 
 /// Not measured yet.
-Built build(const scene::Primitive& shape) {
-  const scene::SourceMesh source = lab::as_mesh(shape);
+Built build(const scene::SourceMesh& source) {
   const MeshPlan plan = plan_mesh(source, {}, {AttributeChoice::kAll}, "m");
   Built built{*prepare_mesh(source, plan.layout, {}), {}};
   Result<LodDag> dag = build_dag(built.mesh, {});
   EXPECT_TRUE(dag.ok());
   if (dag.ok()) built.dag = std::move(*dag);
   return built;
+}
+
+Built build(const scene::Primitive& shape) {
+  return build(lab::as_mesh(shape));
+}
+
+/// Every third run of seven triangles is of another material.
+scene::SourceMesh in_two_materials(const scene::Primitive& shape) {
+  scene::SourceMesh mesh = lab::as_mesh(shape);
+  mesh.primitives.push_back(shape);
+  for (std::uint32_t m = 0; m < 2; ++m) {
+    mesh.primitives[m].material = MaterialId(m);
+    mesh.primitives[m].indices.clear();
+  }
+  for (std::size_t i = 0; i < shape.indices.size(); ++i) {
+    mesh.primitives[i / 21 % 3 == 0 ? 1 : 0].indices.push_back(shape.indices[i]);
+  }
+  return mesh;
 }
 
 LodDag measured(const Built& built, ErrorTier tier) {
@@ -112,6 +129,7 @@ void shuffle(std::size_t stride, SplitMix64& random, LodDag& dag) {
     }
     for (std::uint32_t t = 0; t < cluster.triangle_count; ++t) {
       const std::size_t turn = random.below(3);
+      dag.triangle_material[cluster.first_triangle + triangle[t]] = old.triangle_material[cluster.first_triangle + t];
       for (std::size_t k = 0; k < 3; ++k) {
         dag.triangles[cluster.first_triangle + triangle[t]][(k + turn) % 3] =
             static_cast<std::uint8_t>(to[old.triangles[cluster.first_triangle + t][k]]);
@@ -124,8 +142,9 @@ TEST(Measure, SameForAnyOrderWithinClusters) {
   SplitMix64 random(20261128);
   // A scale so coarse that vertices of one place become equal.
   for (const double normal_error : {0.1, 20.0}) {
-    for (const scene::Primitive& shape : {lab::make_rock(16), lab::make_loose_pieces(300)}) {
-      Built built = build(shape);
+    for (const scene::SourceMesh& source : {lab::as_mesh(lab::make_rock(16)), lab::as_mesh(lab::make_loose_pieces(300)),
+                                            in_two_materials(lab::make_rock(16))}) {
+      Built built = build(source);
       snap_attributes(built.mesh.layout, {.normal_error = normal_error}, built.dag);
       for (const ErrorTier tier : {ErrorTier::kMeasured, ErrorTier::kCertified}) {
         const LodDag first = measured(built, tier);
@@ -140,6 +159,7 @@ TEST(Measure, SameForAnyOrderWithinClusters) {
           EXPECT_EQ(first.groups[g].uv_deviation, second.groups[g].uv_deviation);
         }
         EXPECT_EQ(second.triangles, other.dag.triangles);
+        EXPECT_EQ(second.triangle_material, other.dag.triangle_material);
       }
     }
   }
