@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a reader asks before it loads a page: the ranges of the first pages, and hints, in C as in C++.
+#include <unistd.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -160,7 +162,7 @@ void expect_hints_bound_priorities(const Bytes& bytes) {
 
 Bytes built(const std::string& name, BuildOptions options) {
   options.preset = Preset::kFast;
-  const std::string output = testing::TempDir() + "first_" + name + ".lode";
+  const std::string output = testing::TempDir() + "first_" + name + std::to_string(::getpid()) + ".lode";
   const Status status = build_file(std::string(MESHLODE_SOURCE_DIR) + "/data/" + name + ".glb", output, options);
   EXPECT_TRUE(status.ok()) << status.error().message();
   const auto file = MappedFile::open(output);

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/settings/settings_file.h"
-#include "base/glob.h"
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
+#include <string>
 
 #include <gtest/gtest.h>
 
+#include "base/glob.h"
 #include "builder/builder.h"
 #include "lab/samples/samples.h"
 #include "run/read/asset.h"
@@ -197,7 +199,7 @@ class SettingsFolders : public ::testing::Test {
     std::ofstream(root_ / folder / kSettingsFileName) << text;
   }
 
-  fs::path root_ = fs::path(::testing::TempDir()) / "settings_folders";
+  fs::path root_ = fs::path(::testing::TempDir()) / ("settings_folders_" + std::to_string(::getpid()));
 };
 
 TEST_F(SettingsFolders, AreReadFromTheRootDown) {

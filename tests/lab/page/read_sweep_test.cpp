@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "lab/page/read_sweep.h"
 
+#include <unistd.h>
+
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -91,7 +93,7 @@ TEST(ReadSweep, TakesAnyBytes) {
 class Pictures : public ::testing::Test {
  protected:
   void SetUp() override {
-    folder_ = std::filesystem::path(::testing::TempDir()) / "meshlode-read-sweep";
+    folder_ = std::filesystem::path(::testing::TempDir()) / ("meshlode-read-sweep-" + std::to_string(::getpid()));
     std::filesystem::remove_all(folder_);
     std::filesystem::create_directories(folder_ / "pictures");
     data_.views.push_back({"front", ""});
