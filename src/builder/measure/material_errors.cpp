@@ -155,7 +155,8 @@ std::vector<double> material_errors(const PreparedMesh& mesh, const LodDag& dag)
       const GroupId own = dag.clusters[c].own_group;
       if (own.is_valid()) below = std::max(below, errors[own.value]);
     }
-    errors[g] = std::min(std::hypot(errors[g], below), mesh.diagonal);
+    const double moved = std::sqrt(errors[g] * errors[g] + below * below);  // hypot() depends on the C library
+    errors[g] = std::min(moved, mesh.diagonal);
   }
   return errors;
 }

@@ -87,9 +87,11 @@ PromiseErrors measure_promises(const PaintedSource& source, const LodDag& dag, c
                           ? measure(source, product_space_of(source, true), dag, record, margin, texel_errors)
                           : std::nullopt;
     if (appearance && record.error_tier == format::ErrorTier::kCertified) {
-      // Normals are at most 2 apart, and what has none is not compared in them.
-      const auto at_most = [&](double proven, float proven_texels) {
-        return std::min(proven, std::hypot(double{proven_texels}, 2.0 * double{source.units.normal_object}));
+      // Normals are at most 2 apart, and what has none is not compared in them. Not by hypot(): it depends on the C
+      // library.
+      const double apart = 2.0 * double{source.units.normal_object};
+      const auto at_most = [&](double proven, double proven_texels) {
+        return std::min(proven, std::sqrt(proven_texels * proven_texels + apart * apart));
       };
       appearance->level0 = at_most(appearance->level0, out.mesh.level0_texels);
       for (std::size_t g = 0; g < groups.size(); ++g)
