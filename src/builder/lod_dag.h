@@ -2,6 +2,7 @@
 // The LOD DAG of one mesh, as `dag` hands it to `hierarchy` and `encode`. Plain flat arrays.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <limits>
@@ -69,6 +70,11 @@ struct LodDag {
   std::vector<std::uint32_t> triangle_material;
   std::uint32_t level_count = 0;
   std::optional<AttributeSteps> steps;  ///< once attributes are what the file stores (snap_attributes())
+
+  [[nodiscard]] bool has_several_materials() const {
+    const auto is_other = [&](std::uint32_t material) { return material != triangle_material.front(); };
+    return std::any_of(triangle_material.begin(), triangle_material.end(), is_other);
+  }
 };
 
 }  // namespace meshlode::builder

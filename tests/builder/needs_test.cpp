@@ -214,6 +214,24 @@ scene::Scene split(scene::Scene scene) {
   return scene;
 }
 
+/// Tiles of 8 by 8 cells take turns.
+scene::Scene in_two_materials(scene::Scene scene, std::uint32_t n) {
+  scene.materials.resize(2, scene.materials.front());
+  for (scene::SourceMesh& mesh : scene.meshes) {
+    mesh.primitives.push_back(mesh.primitives.front());
+    const std::vector<std::uint32_t> indices = mesh.primitives.front().indices;
+    for (std::uint32_t m = 0; m < 2; ++m) {
+      mesh.primitives[m].material = MaterialId(m);
+      mesh.primitives[m].indices.clear();
+    }
+    for (std::uint32_t i = 0; i < indices.size(); ++i) {
+      const std::uint32_t cell = i / 6, x = cell % n / 8, y = cell / n / 8;
+      mesh.primitives[(x + y) % 2].indices.push_back(indices[i]);
+    }
+  }
+  return scene;
+}
+
 struct Measured {
   std::uint64_t estimate = 0, peak = 0;  ///< bytes
 };
@@ -286,6 +304,7 @@ TEST(NeedsDeathTest, MemoryIsEstimatedFromAboveAndCloseEnough) {
   expect_close(measure([] { return sheets(160, 1, false); }, kMeasured, 1), "51,200 triangles, one thread");
   expect_close(measure([] { return sheets(160, 1, true); }, kMeasured, 2),
                "with normals, UVs and colours, two threads");
+  expect_close(measure([] { return in_two_materials(sheets(160, 1, false), 160); }, kMeasured, 1), "in two materials");
   expect_close(measure([] { return sheets(160, 1, false); }, kQem, 2), "the quadric's tier");
   expect_close(measure([] { return sheets(160, 1, false); }, kCertified, 2), "the certified tier");
   expect_close(measure([] { return sheets(50, 12, false); }, kMeasured, 2), "twelve meshes of 5,000");

@@ -246,4 +246,17 @@ void SurfaceTree::visit_along(const Vec3d& from, const Vec3d& to, const Visit& v
   }
 }
 
+/// A triangle within `enough` of the point, or the nearest. The search begins at `hint`, if there is one.
+[[nodiscard]] inline SurfaceTree::Hit find_near(const SurfaceTree& tree, const Vec3d& point, TreeSlot hint,
+                                                double enough) {
+  const Vec3f at = tree.to_frame(point);
+  const float enough2 = tree.squared_in_frame(enough);
+  SurfaceTree::Hit hit;
+  if (hint.is_valid()) hit = tree.look_around(at, hint, hit);
+  return hit.distance2 <= enough2 ? hit : tree.find_nearest(at, hit, enough2);
+}
+[[nodiscard]] inline double distance_at(const SurfaceTree& tree, const Vec3d& point, TreeSlot slot) {
+  return slot.is_valid() ? std::sqrt(tree.distance2_at(point, slot)) : 0.0;
+}
+
 }  // namespace meshlode::builder

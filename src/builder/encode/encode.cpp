@@ -8,7 +8,6 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
-#include <functional>
 #include <limits>
 #include <optional>
 #include <string>
@@ -51,9 +50,8 @@ ChannelPlan plan_channels(const PreparedMesh& mesh, const LodDag& dag, const Enc
   const AttributeSteps steps = dag.steps ? *dag.steps : choose_steps(mesh.layout, dag, options);
   plan.normal_scale = steps.normal_scale;
   plan.uv_log2 = steps.uv_log2;
-  const auto& material = dag.triangle_material;
-  const bool is_one = std::adjacent_find(material.begin(), material.end(), std::not_equal_to<>()) == material.end();
-  plan.material = !material.empty() && is_one ? material.front() : format::kNone;
+  const bool is_one = !dag.triangle_material.empty() && !dag.has_several_materials();
+  plan.material = is_one ? dag.triangle_material.front() : format::kNone;
   return plan;
 }
 

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstring>
-#include <functional>
 #include <numeric>
 #include <span>
 #include <string>
@@ -249,10 +248,7 @@ Result<CanonicalForm> canonical_form(const PreparedMesh& mesh, const LodDag& dag
   }
   CanonicalForm form;
   form.triangles.resize(dag.triangles.size());
-  const std::vector<std::uint32_t>& materials = dag.triangle_material;
-  const bool is_mixed =
-      std::adjacent_find(materials.begin(), materials.end(), std::not_equal_to<>()) != materials.end();
-  if (is_mixed) form.triangle_material.resize(materials.size());
+  if (dag.has_several_materials()) form.triangle_material.resize(dag.triangle_material.size());
   parallel_for_each_index(dag.clusters.size(), 16,
                           [&](std::size_t c) { order_cluster(dag, dag.clusters[c], mesh.layout.stride(), form); });
   const std::vector<std::uint32_t> of_source = number_positions(mesh, dag, form);

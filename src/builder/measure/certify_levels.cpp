@@ -8,49 +8,15 @@
 #include <utility>
 #include <vector>
 
-#include "base/local_ids.h"
 #include "base/parallel.h"
 #include "builder/deviation/deviation.h"
 #include "builder/measure/group_attributes.h"
 #include "builder/measure/groups_by_level.h"
+#include "builder/measure/joined_clusters.h"
 
 namespace meshlode::builder {
 
 namespace {
-
-/// Clusters of the DAG as one surface, off the grid. Positions are in the order of their ids.
-struct SearchedCluster {
-  std::vector<Vec3d> positions;
-  std::vector<std::array<std::uint32_t, 3>> triangles;
-
-  SearchedCluster(const PreparedMesh& mesh, const LodDag& dag, std::span<const std::uint32_t> position_of_vertex,
-                  std::span<const std::uint32_t> clusters) {
-    std::size_t count = 0;
-    for (const std::uint32_t c : clusters) count += dag.clusters[c].triangle_count;
-    triangles.reserve(count);
-    LocalIds ids(count);
-    std::vector<Vec3i> on_grid;
-    for (const std::uint32_t c : clusters) {
-      const DagCluster& cluster = dag.clusters[c];
-      for (std::uint32_t t = cluster.first_triangle; t < cluster.first_triangle + cluster.triangle_count; ++t) {
-        std::array<std::uint32_t, 3> corners{};
-        for (std::size_t k = 0; k < 3; ++k) {
-          const std::uint32_t vertex = cluster.first_vertex + dag.triangles[t][k];
-          corners[k] = ids.add(position_of_vertex[vertex]);
-          if (corners[k] == on_grid.size()) on_grid.push_back(dag.vertex_position[vertex]);
-        }
-        triangles.push_back(corners);
-      }
-    }
-    const std::vector<std::uint32_t> place = ids.sort();
-    positions.resize(on_grid.size());
-    for (std::size_t p = 0; p < on_grid.size(); ++p) positions[place[p]] = mesh.grid.decode(on_grid[p]);
-    for (auto& corners : triangles) {
-      for (std::uint32_t& corner : corners) corner = place[corner];
-    }
-  }
-  [[nodiscard]] GroupSurface surface() const { return {positions, triangles}; }
-};
 
 class Certifier {
  public:
@@ -83,8 +49,8 @@ class Certifier {
   }
 
  private:
-  [[nodiscard]] SearchedCluster surface_of(std::span<const std::uint32_t> clusters) const {
-    return {mesh_, dag_, form_.position_of_vertex, clusters};
+  [[nodiscard]] JoinedClusters surface_of(std::span<const std::uint32_t> clusters) const {
+    return {dag_, mesh_.grid, form_.position_of_vertex, clusters};
   }
 
   void certify(std::uint32_t id) {
@@ -96,7 +62,7 @@ class Certifier {
       const GroupId own = dag_.clusters[members[i]].own_group;
       if (own.is_valid()) floor = std::max(floor, dag_.groups[own.value].error);
     }
-    const SearchedCluster before = surface_of(members), after = surface_of(made_of_[id]);
+    const JoinedClusters before = surface_of(members), after = surface_of(made_of_[id]);
     const std::span<const TriangleBound> known =
         std::span(bounds_).subspan(dag_.clusters[members.front()].first_triangle, before.triangles.size());
     const CertifiedGroup certified = certify_group(before.surface(), known, after.surface());

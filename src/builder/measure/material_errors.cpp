@@ -6,21 +6,21 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <span>
-#include <utility>
+#include <tuple>
 #include <vector>
 
 #include "base/box.h"
-#include "base/ids.h"
+#include "base/disjoint_sets.h"
 #include "base/parallel.h"
 #include "base/vec.h"
 #include "builder/deviation/attribute_deviation.h"
 #include "builder/deviation/surface_tree.h"
-#include "builder/measure/cluster_surface.h"
 #include "builder/measure/groups_by_level.h"
+#include "builder/measure/joined_clusters.h"
 
 namespace meshlode::builder {
 
@@ -29,39 +29,41 @@ namespace {
 /// Of a group's extent: what floats, by which the nearest triangle is chosen, make of nothing.
 constexpr double kNoiseOfFloats = 1e-6;
 
-[[nodiscard]] std::span<const std::uint32_t> materials_of(const LodDag& dag, const DagCluster& cluster) {
-  return std::span(dag.triangle_material).subspan(cluster.first_triangle, cluster.triangle_count);
-}
-
 /// Clusters with their materials.
-struct PaintedSurface {
-  ClusterSurface surface;
+struct MaterialSurface {
+  JoinedClusters joined;
   std::vector<std::uint32_t> material;  ///< per triangle
 
-  void add(const LodDag& dag, const format::PositionGrid& grid, const DagCluster& cluster) {
-    surface.add(dag, grid, cluster);
-    const std::span<const std::uint32_t> materials = materials_of(dag, cluster);
-    material.insert(material.end(), materials.begin(), materials.end());
+  MaterialSurface(const PreparedMesh& mesh, const CanonicalForm& form, const LodDag& dag,
+                  std::span<const std::uint32_t> clusters)
+      : joined(dag, mesh.grid, form.position_of_vertex, clusters) {
+    for (const std::uint32_t c : clusters) {
+      const auto first = form.triangle_material.begin() + dag.clusters[c].first_triangle;
+      material.insert(material.end(), first, first + dag.clusters[c].triangle_count);
+    }
   }
   [[nodiscard]] TriangleCorners corners(std::size_t triangle) const {
-    const auto& [a, b, c] = surface.triangles[triangle];
-    return {surface.positions[a], surface.positions[b], surface.positions[c]};
+    const auto& [a, b, c] = joined.triangles[triangle];
+    return {joined.positions[a], joined.positions[b], joined.positions[c]};
+  }
+  [[nodiscard]] bool is_mixed() const {
+    return std::any_of(material.begin(), material.end(), [&](std::uint32_t m) { return m != material.front(); });
   }
   [[nodiscard]] double extent() const {
     Box3d box;
-    for (const Vec3d& position : surface.positions) box.add(position);
-    return surface.positions.empty() ? 0.0 : glm::length(box.size());
+    for (const Vec3d& position : joined.positions) box.add(position);
+    return box.is_empty() ? 0.0 : glm::length(box.size());
   }
 };
 
 /// Distances from a surface, material by material.
 class MaterialDistance {
  public:
-  explicit MaterialDistance(const PaintedSurface& painted) {
-    for (std::size_t t = 0; t < painted.material.size(); ++t) {
-      parts_[painted.material[t]].triangles.push_back(painted.surface.triangles[t]);
+  explicit MaterialDistance(const MaterialSurface& surface) {
+    for (std::size_t t = 0; t < surface.material.size(); ++t) {
+      parts_[surface.material[t]].triangles.push_back(surface.joined.triangles[t]);
     }
-    for (auto& [material, part] : parts_) part.tree.build({painted.surface.positions, part.triangles});
+    for (auto& [material, part] : parts_) part.tree.build({surface.joined.positions, part.triangles});
   }
 
   /// Infinite where nothing has the material.
@@ -69,13 +71,8 @@ class MaterialDistance {
     const auto found = parts_.find(material);
     if (found == parts_.end()) return std::numeric_limits<double>::infinity();
     Part& part = found->second;
-    const Vec3f place = part.tree.to_frame(x);
-    SurfaceTree::Hit hit;
-    if (part.near.is_valid()) hit = part.tree.look_around(place, part.near, hit);
-    hit = part.tree.find_nearest(place, hit, 0.0F);
-    if (!hit.slot.is_valid()) return std::numeric_limits<double>::infinity();
-    part.near = hit.slot;
-    return std::sqrt(part.tree.distance2_at(x, hit.slot));
+    part.near = find_near(part.tree, x, part.near, 0.0).slot;
+    return distance_at(part.tree, x, part.near);
   }
 
  private:
@@ -87,66 +84,71 @@ class MaterialDistance {
   std::map<std::uint32_t, Part> parts_;
 };
 
-/// The largest distance x beyond which an area of x² is lost.
-[[nodiscard]] double lost_width(const PaintedSurface& before, const PaintedSurface& after) {
-  struct Lost {
-    double distance, area;
+/// A triangle, how far it is lost, and what it hangs together with.
+struct Lost {
+  std::uint32_t piece = 0;
+  double distance = 0.0, area = 0.0;
+};
+
+std::vector<Lost> lost_triangles(const MaterialSurface& before, MaterialDistance& distance) {
+  struct Use {
+    std::uint32_t position, material, triangle;
   };
-  std::vector<Lost> lost;
-  MaterialDistance distance(after);
-  const double extent = before.extent();
-  // Of a vertex, for the material that it was asked for last: seldom another one's.
-  std::vector<std::pair<std::uint32_t, double>> known(before.surface.positions.size(), {kNoId, 0.0});
-  for (std::size_t t = 0; t < before.material.size(); ++t) {
-    const std::uint32_t material = before.material[t];
+  std::vector<Use> uses;
+  std::vector<Lost> lost(before.material.size());
+  for (std::uint32_t t = 0; t < lost.size(); ++t) {
     const TriangleCorners corners = before.corners(t);
-    double most = distance.at((corners[0] + corners[1] + corners[2]) / 3.0, material);
-    for (std::size_t k = 0; k < 3; ++k) {
-      auto& [of, there] = known[before.surface.triangles[t][k]];
-      if (of != material) there = distance.at(corners[k], material);
-      of = material;
-      most = std::max(most, there);
-    }
-    if (most > kNoiseOfFloats * extent) lost.push_back({std::min(most, extent), 0.5 * area_of(corners)});
+    lost[t].area = 0.5 * area_of(corners);  // which says twice the area
+    lost[t].distance = distance.at((corners[0] + corners[1] + corners[2]) / 3.0, before.material[t]);
+    for (const std::uint32_t position : before.joined.triangles[t]) uses.push_back({position, before.material[t], t});
   }
+  std::sort(uses.begin(), uses.end(), [](const Use& a, const Use& b) {
+    return std::tie(a.position, a.material, a.triangle) < std::tie(b.position, b.material, b.triangle);
+  });
+  DisjointSets pieces(lost.size());
+  for (std::size_t i = 0; i < uses.size();) {
+    const Use first = uses[i];
+    const double there = distance.at(before.joined.positions[first.position], first.material);
+    for (; i < uses.size() && uses[i].position == first.position && uses[i].material == first.material; ++i) {
+      (void)pieces.join(first.triangle, uses[i].triangle);
+      lost[uses[i].triangle].distance = std::max(lost[uses[i].triangle].distance, there);
+    }
+  }
+  for (std::uint32_t t = 0; t < lost.size(); ++t) lost[t].piece = pieces.find(t);
+  return lost;
+}
+
+/// Of the worst piece the largest distance x beyond which an area of x² is lost.
+double lost_width(const MaterialSurface& before, const MaterialSurface& after) {
+  MaterialDistance distance(after);
+  std::vector<Lost> lost = lost_triangles(before, distance);
+  const double extent = before.extent();
+  std::erase_if(lost, [&](const Lost& l) { return l.distance <= kNoiseOfFloats * extent; });
   std::sort(lost.begin(), lost.end(), [](const Lost& a, const Lost& b) {
-    return a.distance != b.distance ? a.distance > b.distance : a.area > b.area;
+    return std::tie(a.piece, b.distance, b.area) < std::tie(b.piece, a.distance, a.area);  // the farthest first
   });
   double width = 0.0, area = 0.0;
-  for (const Lost& triangle : lost) {
-    area += triangle.area;
-    width = std::max(width, std::min(triangle.distance, std::sqrt(area)));
+  for (std::size_t i = 0; i < lost.size(); ++i) {
+    if (i > 0 && lost[i].piece != lost[i - 1].piece) area = 0.0;
+    area += lost[i].area;
+    width = std::max(width, std::min({lost[i].distance, std::sqrt(area), extent}));
   }
   return width;
 }
 
-/// Of one group alone.
-[[nodiscard]] double moved_by(const PreparedMesh& mesh, const LodDag& dag, const DagGroup& group,
-                              std::span<const std::uint32_t> made) {
-  const std::span members = std::span(dag.clusters).subspan(group.first_cluster, group.cluster_count);
-  std::uint32_t least = kNoId, most = 0;
-  for (const DagCluster& cluster : members) {
-    for (const std::uint32_t material : materials_of(dag, cluster)) {
-      least = std::min(least, material);
-      most = std::max(most, material);
-    }
-  }
-  if (least >= most) return 0.0;  // one material
-  PaintedSurface before, after;
-  for (const DagCluster& cluster : members) before.add(dag, mesh.grid, cluster);
-  for (const std::uint32_t c : made) after.add(dag, mesh.grid, dag.clusters[c]);
-  return lost_width(before, after);
-}
-
 }  // namespace
 
-std::vector<double> material_errors(const PreparedMesh& mesh, const LodDag& dag) {
-  const std::vector<std::uint32_t>& materials = dag.triangle_material;
-  if (std::adjacent_find(materials.begin(), materials.end(), std::not_equal_to<>()) == materials.end()) return {};
+std::vector<double> material_errors(const PreparedMesh& mesh, const CanonicalForm& form, const LodDag& dag) {
+  if (form.triangle_material.empty()) return {};
   const std::vector<std::vector<std::uint32_t>> made_of = clusters_made_of_groups(dag);
   std::vector<double> errors(dag.groups.size(), 0.0);
   parallel_for_each_index(dag.groups.size(), 1, [&](std::size_t g) {
-    if (!dag.groups[g].is_terminal) errors[g] = moved_by(mesh, dag, dag.groups[g], made_of[g]);
+    const DagGroup& group = dag.groups[g];
+    if (group.is_terminal) return;
+    std::vector<std::uint32_t> members(group.cluster_count);
+    std::iota(members.begin(), members.end(), group.first_cluster);
+    const MaterialSurface before(mesh, form, dag, members);
+    if (before.is_mixed()) errors[g] = lost_width(before, MaterialSurface(mesh, form, dag, made_of[g]));
   });
   for (std::size_t g = dag.groups.size(); g-- > 0;) {  // from fine to coarse
     const DagGroup& group = dag.groups[g];
@@ -155,8 +157,7 @@ std::vector<double> material_errors(const PreparedMesh& mesh, const LodDag& dag)
       const GroupId own = dag.clusters[c].own_group;
       if (own.is_valid()) below = std::max(below, errors[own.value]);
     }
-    const double moved = std::sqrt(errors[g] * errors[g] + below * below);  // hypot() depends on the C library
-    errors[g] = std::min(moved, mesh.diagonal);
+    errors[g] = std::sqrt(errors[g] * errors[g] + below * below);  // hypot() depends on the C library
   }
   return errors;
 }

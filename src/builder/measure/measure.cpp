@@ -55,13 +55,8 @@ Status measure(const PreparedMesh& mesh, format::ErrorTier tier, LodDag& dag, co
   if (!form) return form.error();
   on_form();
   dag.triangles.swap(form->triangles);
-  std::vector<double> least;
-  if (!form->triangle_material.empty()) {
-    dag.triangle_material.swap(form->triangle_material);
-    least = material_errors(mesh, dag);
-    dag.triangle_material.swap(form->triangle_material);
-    release(form->triangle_material);
-  }
+  const std::vector<double> least = material_errors(mesh, *form, dag);
+  release(form->triangle_material);
   if (tier == format::ErrorTier::kCertified) {
     certify_levels(mesh, *std::move(source), *form, least, dag);
   } else {

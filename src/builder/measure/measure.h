@@ -21,13 +21,18 @@ constexpr double kMeasuredMargin = 1.02;
 ///   kQem        the simplifier's own estimate, as the file stores it
 ///   kMeasured   the largest distance that was met between each level's whole surface and the source (measure_levels.h)
 ///   kCertified  an upper bound of the deviation
-/// In a mesh of several materials kMeasured and kCertified are no less than its materials have moved
+/// In a mesh of several materials the errors of kMeasured and kCertified are no less than its materials have moved
 /// (material_errors.h). A group of an aggregate (DagGroup::is_aggregate) keeps what its coverage is off by, with the
-/// tier's margin. What comes of it depends on the geometry alone (canonical_form()), so that what an asset decodes to
-/// gets the errors that its build had: attributes are to be as they are stored (snap_attributes()). The same for any
-/// thread count (I10). Errors: kCheckFailed where the DAG's level 0 is another surface than the mesh's; cannot be of a
-/// DAG made from it. kUnsupported for 2^32 vertices and more. \pre `mesh` has its frame, its layout and, unless the
-/// tier is kQem, its exact triangles
+/// tier's margin.
+///
+/// What comes of it depends on the DAG's triangles alone, in whatever order they lie within their clusters
+/// (canonical_form()): what an asset decodes to gets the errors that its build had. Attributes are to be as they are
+/// stored (snap_attributes()). The same for any thread count (I10).
+///
+/// Errors: kCheckFailed where the DAG's level 0 is another surface than the mesh's; cannot be of a DAG made from it.
+/// kUnsupported for 2^32 vertices and more.
+///
+/// \pre `mesh` has its frame, its layout and, unless the tier is kQem, its exact triangles
 [[nodiscard]] Status measure(const PreparedMesh& mesh, format::ErrorTier tier, LodDag& dag);
 /// And frees the exact triangles: each part of them as soon as nothing needs it.
 [[nodiscard]] Status measure_and_free(PreparedMesh& mesh, format::ErrorTier tier, LodDag& dag);

@@ -10,10 +10,8 @@
 #include <tbb/task_arena.h>
 
 #include "base/random.h"
-#include "builder/dag/build_dag.h"
 #include "builder/encode/attribute_steps.h"
-#include "builder/plan/plan.h"
-#include "builder/prepare/prepare.h"
+#include "built.h"
 #include "lab/samples/samples.h"
 #include "support/sanitized.h"
 
@@ -21,39 +19,8 @@ namespace meshlode::builder {
 namespace {
 
 using format::ErrorTier;
-
-struct Built {
-  PreparedMesh mesh;
-  LodDag dag;
-};
-
-/// Not measured yet.
-Built build(const scene::SourceMesh& source) {
-  const MeshPlan plan = plan_mesh(source, {}, {AttributeChoice::kAll}, "m");
-  Built built{*prepare_mesh(source, plan.layout, {}), {}};
-  Result<LodDag> dag = build_dag(built.mesh, {});
-  EXPECT_TRUE(dag.ok());
-  if (dag.ok()) built.dag = std::move(*dag);
-  return built;
-}
-
-Built build(const scene::Primitive& shape) {
-  return build(lab::as_mesh(shape));
-}
-
-/// Every third run of seven triangles is of another material.
-scene::SourceMesh in_two_materials(const scene::Primitive& shape) {
-  scene::SourceMesh mesh = lab::as_mesh(shape);
-  mesh.primitives.push_back(shape);
-  for (std::uint32_t m = 0; m < 2; ++m) {
-    mesh.primitives[m].material = MaterialId(m);
-    mesh.primitives[m].indices.clear();
-  }
-  for (std::size_t i = 0; i < shape.indices.size(); ++i) {
-    mesh.primitives[i / 21 % 3 == 0 ? 1 : 0].indices.push_back(shape.indices[i]);
-  }
-  return mesh;
-}
+using test::build;
+using test::Built;
 
 LodDag measured(const Built& built, ErrorTier tier) {
   LodDag dag = built.dag;
@@ -140,10 +107,12 @@ void shuffle(std::size_t stride, SplitMix64& random, LodDag& dag) {
 
 TEST(Measure, SameForAnyOrderWithinClusters) {
   SplitMix64 random(20261128);
+  const scene::SourceMesh mixed = test::in_two_materials(
+      lab::make_rock(16), [](std::size_t triangle, const Vec3d&) { return triangle / 7 % 3 == 0; });
   // A scale so coarse that vertices of one place become equal.
   for (const double normal_error : {0.1, 20.0}) {
-    for (const scene::SourceMesh& source : {lab::as_mesh(lab::make_rock(16)), lab::as_mesh(lab::make_loose_pieces(300)),
-                                            in_two_materials(lab::make_rock(16))}) {
+    for (const scene::SourceMesh& source :
+         {lab::as_mesh(lab::make_rock(16)), lab::as_mesh(lab::make_loose_pieces(300)), mixed}) {
       Built built = build(source);
       snap_attributes(built.mesh.layout, {.normal_error = normal_error}, built.dag);
       for (const ErrorTier tier : {ErrorTier::kMeasured, ErrorTier::kCertified}) {
@@ -199,7 +168,8 @@ TEST(Measure, AnEmptyDagAndAMeshOfOneClusterHaveNothingToMeasure) {
 TEST(Measure, AnErrorIsTheDeviationWithTheMarginAndTheLargestBelow) {
   for (const ErrorTier tier : {ErrorTier::kMeasured, ErrorTier::kCertified}) {
     const double margin = tier == ErrorTier::kMeasured ? kMeasuredMargin : 1.0;
-    for (const scene::Primitive& shape : {lab::make_rock(9), lab::make_loose_pieces(test::kIsSanitized ? 300 : 600)}) {
+    for (const scene::Primitive& shape :
+         {lab::make_rock(9), lab::make_loose_pieces(meshlode::test::kIsSanitized ? 300 : 600)}) {
       const Built built = build(shape);
       const LodDag dag = measured(built, tier);
       std::size_t replaced = 0;
