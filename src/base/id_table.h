@@ -72,12 +72,12 @@ class IdTable {
     if (!slots_.empty()) __builtin_prefetch(&slots_[first_slot(hash, slots_.size())]);
   }
 
-  /// All of 0 … count - 1 into an empty table, in any order and on any thread: `for_each(count, insert)` calls
-  /// insert(id) once for each. Who comes first takes the nearer slot, which no later call can tell. `hash_of` gives the
-  /// hash of an id. \pre their keys are distinct
+  /// All of 0 … count - 1 into an empty table with room for `more` besides, in any order and on any thread:
+  /// `for_each(count, insert)` calls insert(id) once for each. Who comes first takes the nearer slot, which no later
+  /// call can tell. `hash_of` gives the hash of an id. \pre their keys are distinct
   template <class ForEach, class HashOf>
-  void fill(std::uint32_t count, const ForEach& for_each, const HashOf& hash_of) {
-    slots_.assign(std::max(slots_.size(), slots_for(count)), kFree);
+  void fill(std::uint32_t count, std::size_t more, const ForEach& for_each, const HashOf& hash_of) {
+    slots_.assign(slots_for(count + more), kFree);
     count_ = count;
     for_each(count, [&](std::uint32_t id) {
       const std::size_t size = slots_.size();

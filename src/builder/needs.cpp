@@ -132,8 +132,7 @@ MemoryEstimate estimate_memory(const scene::Scene& scene, const PipelineOptions&
     const std::uint64_t promised = options.promise == format::Promise::kPosition ? 0 : kTrianglePromised;
     const std::uint64_t held = is_measured && counts.triangles <= SurfaceTree::kFew ? kTriangleHeld : 0;
     const AttributeLayout layout = largest_layout(mesh, own);
-    const std::uint64_t positions = count_wedges(mesh, {});
-    const std::uint64_t wedges = layout.stride() == 0 ? positions : std::max(positions, count_wedges(mesh, layout));
+    const auto [positions, wedges] = count_wedges(mesh, layout);
     std::uint64_t bytes = ((is_certified ? kTriangleOfCertified : kTriangle) + held + promised) * counts.triangles +
                           (is_measured ? kPosition : kPositionOfQuadric) * positions +
                           kFurtherWedge * (wedges - positions) + kVertexFloat * layout.stride() * counts.vertices;

@@ -99,7 +99,7 @@ SizeEstimate estimate_size(const scene::SourceMesh& mesh, const builder::Attribu
   const auto source = static_cast<double>(facts.triangles);
   const double stored = is_whole ? source : kStoredPerSource * source;
   const double wedges =
-      static_cast<double>(builder::count_wedges(mesh, layout)) / source + (is_whole ? 0.0 : kBorderVertices);
+      static_cast<double>(builder::count_wedges(mesh, layout).wedges) / source + (is_whole ? 0.0 : kBorderVertices);
   const double vertices = stored * std::min(3.0, wedges);
   const auto bytes = [&](double bits) { return vertices * bits / 8.0; };
   out.positions = bytes(std::max(0.0, 3.0 * facts.position_bits - kFlatBits));

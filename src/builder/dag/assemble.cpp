@@ -9,6 +9,7 @@
 #include "base/ids.h"
 #include "base/parallel.h"
 #include "base/release.h"
+#include "base/unset_vector.h"
 #include "builder/dag/level_pool.h"
 #include "builder/gap_label.h"
 
@@ -19,7 +20,7 @@ namespace {
 /// Writes a cluster's triangles to the places that it was given, by material, stable, and of its vertices the wedges:
 /// by first use again where the triangles come in another order.
 void write_cluster(const BuildPool& pool, const BuildCluster& source, const DagCluster& cluster, LodDag& dag,
-                   std::vector<std::uint32_t>& wedge_of_vertex) {
+                   std::span<std::uint32_t> wedge_of_vertex) {
   std::vector<std::uint32_t> triangles(source.triangle_count);
   std::iota(triangles.begin(), triangles.end(), source.first_triangle);
   const auto before = [&](std::uint32_t a, std::uint32_t b) {
@@ -57,25 +58,29 @@ void write_clusters(BuildPool& pool, const std::vector<ClusterId>& sources, std:
     vertices += cluster.vertex_count;
     triangles += cluster.triangle_count;
   }
-  std::vector<std::uint32_t> wedge_of_vertex(vertices);
-  dag.triangles.resize(triangles);
-  dag.triangle_material.resize(triangles);
+  UnsetVector<std::uint32_t> wedge_of_vertex(vertices);
+  resize_all(triangles, dag.triangles, dag.triangle_material);
   parallel_for_each_index(sources.size(), kGrain, [&](std::size_t i) {
     write_cluster(pool, pool.cluster(sources[i]), dag.clusters[i], dag, wedge_of_vertex);
   });
   release(pool.triangles, pool.vertices, pool.clusters, pool.groups);
   pool.triangle_material = {};
-  dag.vertex_position.resize(vertices);
-  parallel_for_each_index(vertices, kLoopGrain, [&](std::size_t v) {
-    dag.vertex_position[v] = pool.positions[pool.wedge_position[wedge_of_vertex[v]]];
-  });
-  release(pool.positions, pool.wedge_position);
-  dag.vertex_attributes.resize(std::size_t{vertices} * stride);
-  parallel_for_each_index(vertices, kLoopGrain, [&](std::size_t v) {
-    std::copy_n(pool.wedge_attributes.begin() + static_cast<std::ptrdiff_t>(wedge_of_vertex[v] * stride), stride,
-                dag.vertex_attributes.begin() + static_cast<std::ptrdiff_t>(v * stride));
-  });
-  release(pool.wedge_attributes);
+  const auto write_positions = [&] {
+    dag.vertex_position.resize(vertices);
+    parallel_for_each_index(vertices, kLoopGrain, [&](std::size_t v) {
+      dag.vertex_position[v] = pool.positions[pool.wedge_position[wedge_of_vertex[v]]];
+    });
+    release(pool.positions, pool.wedge_position);
+  };
+  const auto write_attributes = [&] {
+    dag.vertex_attributes.resize(std::size_t{vertices} * stride);
+    parallel_for_each_index(vertices, kLoopGrain, [&](std::size_t v) {
+      std::copy_n(pool.wedge_attributes.begin() + static_cast<std::ptrdiff_t>(wedge_of_vertex[v] * stride), stride,
+                  dag.vertex_attributes.begin() + static_cast<std::ptrdiff_t>(v * stride));
+    });
+    release(pool.wedge_attributes);
+  };
+  parallel_all(write_positions, write_attributes);
 }
 
 }  // namespace

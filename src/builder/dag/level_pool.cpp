@@ -15,12 +15,11 @@ namespace meshlode::builder {
 
 namespace {
 
-/// A mesh's array with room for more. Room that is never written to takes no memory.
+/// Takes a mesh's array and gives it room for more. Room that is never written to takes no memory.
 template <class T>
-std::vector<T> take_level0(std::vector<T>& level0, std::size_t more) {
-  std::vector<T> taken = std::exchange(level0, {});
+void take_level0(std::vector<T>& level0, std::size_t more, std::vector<T>& taken) {
+  taken = std::exchange(level0, {});
   taken.reserve(taken.size() + more);
-  return taken;
 }
 
 /// Side by side, in tasks of many.
@@ -56,27 +55,26 @@ CoarserLevels halved_levels(const PreparedMesh& mesh) {
 }
 
 BuildPool::BuildPool(PreparedMesh& mesh, const CoarserLevels& coarser)
-    : positions(take_level0(mesh.positions, coarser.positions)),
-      wedge_position(take_level0(mesh.wedge_position, coarser.wedges)),
-      wedge_attributes(take_level0(mesh.wedge_attributes, coarser.wedges * mesh.layout.stride())),
-      stride_(mesh.layout.stride()),
-      has_witnesses_(coarser.has_witnesses),
-      position_table_(positions.size() + coarser.positions),
-      wedge_table_(wedge_position.size() + coarser.wedges) {
+    : stride_(mesh.layout.stride()), has_witnesses_(coarser.has_witnesses) {
   triangles.reserve(mesh.triangles.size() + coarser.triangles);
   vertices.reserve(triangles.capacity());
   triangle_material.expect(triangles.capacity());
-  if (has_witnesses_) {
+  const auto take_positions = [&] {
+    take_level0(mesh.positions, coarser.positions, positions);
+    const auto hash_of = [&](std::uint32_t id) { return hash_point(positions[id]); };
+    position_table_.fill(static_cast<std::uint32_t>(positions.size()), coarser.positions, kForEachId, hash_of);
+    if (!has_witnesses_) return;
     witnesses.reserve(positions.capacity());
-    witnesses.resize(positions.size(), kNoWitnesses);
-    parallel_for_each_index(positions.size(), kLoopGrain,
-                            [&](std::size_t p) { witnesses[p].front() = static_cast<std::uint32_t>(p); });
-  }
-  position_table_.fill(static_cast<std::uint32_t>(positions.size()), kForEachId,
-                       [&](std::uint32_t id) { return hash_point(positions[id]); });
-  wedge_table_.fill(static_cast<std::uint32_t>(wedge_position.size()), kForEachId, [&](std::uint32_t id) {
-    return hash_wedge(wedge_position[id], wedge_attributes.data() + id * stride_);
-  });
+    for (std::uint32_t p = 0; p < positions.size(); ++p) witnesses.push_back({p, kNoId, kNoId});
+  };
+  const auto take_wedges = [&] {
+    take_level0(mesh.wedge_position, coarser.wedges, wedge_position);
+    take_level0(mesh.wedge_attributes, coarser.wedges * stride_, wedge_attributes);
+    wedge_table_.fill(
+        static_cast<std::uint32_t>(wedge_position.size()), coarser.wedges, kForEachId,
+        [&](std::uint32_t id) { return hash_wedge(wedge_position[id], wedge_attributes.data() + id * stride_); });
+  };
+  parallel_all(take_positions, take_wedges);
 }
 
 std::uint64_t BuildPool::hash_wedge(std::uint32_t position, const float* attributes) const {

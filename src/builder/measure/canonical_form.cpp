@@ -2,6 +2,7 @@
 #include "builder/measure/canonical_form.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cstddef>
 #include <cstring>
 #include <numeric>
@@ -12,6 +13,7 @@
 #include "base/id_table.h"
 #include "base/ids.h"
 #include "base/parallel.h"
+#include "base/release.h"
 #include "base/try.h"
 #include "base/unset_vector.h"
 
@@ -108,14 +110,10 @@ std::vector<std::uint32_t> sorted(std::span<const Corners> triangles, std::size_
 struct Turned {
   std::vector<Corners> triangles;
   std::vector<std::uint8_t> turn;
-  void add(const Corners& t) {
+  void set(std::size_t at, const Corners& t) {
     const std::size_t by = least_turn(t);
-    triangles.push_back({t[by], t[(by + 1) % 3], t[(by + 2) % 3]});
-    turn.push_back(static_cast<std::uint8_t>(by));
-  }
-  void reserve(std::size_t count) {
-    triangles.reserve(count);
-    turn.reserve(count);
+    triangles[at] = {t[by], t[(by + 1) % 3], t[(by + 2) % 3]};
+    turn[at] = static_cast<std::uint8_t>(by);
   }
 };
 
@@ -133,10 +131,29 @@ void order_of_use(const CanonicalForm& form, const DagCluster& cluster, std::spa
   for (std::size_t local = 0; local < cluster.vertex_count; ++local) add(local);
 }
 
+/// Ids of what is used, in the order of its first use. `first`: per use, the first one of the same.
+UnsetVector<std::uint32_t> number_by_first_use(std::span<const std::uint32_t> first) {
+  constexpr std::size_t kChunk = 16384;
+  std::vector<std::uint32_t> next(chunk_count(first.size(), kChunk) + 1, 0);
+  parallel_for_each_chunk(first.size(), kChunk, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+    for (std::size_t use = begin; use < end; ++use) next[chunk + 1] += first[use] == use ? 1 : 0;
+  });
+  std::partial_sum(next.begin(), next.end(), next.begin());
+  UnsetVector<std::uint32_t> number(first.size()), ids(first.size());
+  parallel_for_each_chunk(first.size(), kChunk, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+    std::uint32_t id = next[chunk];
+    for (std::size_t use = begin; use < end; ++use) {
+      if (first[use] == use) number[use] = id++;
+    }
+  });
+  parallel_for_each_index(first.size(), kLoopGrain, [&](std::size_t use) { ids[use] = number[first[use]]; });
+  return ids;
+}
+
 /// Ids of places on the grid in the order of their first use. They are looked up in parts by their hash, each of which
 /// sees its places in that order.
 template <class Place>
-std::vector<std::uint32_t> number_places(std::size_t count, const Place& place) {
+UnsetVector<std::uint32_t> number_places(std::size_t count, const Place& place) {
   constexpr std::size_t kParts = 64, kChunk = 16384;
   const auto hash_of = [&](std::uint32_t use) { return hash_point(place(use)); };
   const auto part_of = [&](std::uint64_t hash) { return hash >> 58U; };  // tables look at the low bits
@@ -159,32 +176,29 @@ std::vector<std::uint32_t> number_places(std::size_t count, const Place& place) 
   }
   UnsetVector<std::uint32_t> sorted(count);
   for_each([&](std::uint32_t& next, std::uint32_t use) { sorted[next++] = use; });
-  std::vector<std::uint32_t> ids(count);  // at first the first use of the same place
+  UnsetVector<std::uint32_t> first(count);  // use of the same place
   parallel_for_each_index(kParts, 1, [&](std::size_t part) {
     IdTable table(start[part + 1] - start[part]);
     for (std::uint32_t i = start[part]; i < start[part + 1]; ++i) {
       const std::uint32_t use = sorted[i];
       const Vec3i here = place(use);
-      ids[use] = table
-                     .find_or_insert(
-                         hash_point(here), use, [&](std::uint32_t other) { return place(other) == here; }, hash_of)
-                     .id;
+      const auto is_here = [&](std::uint32_t other) { return place(other) == here; };
+      first[use] = table.find_or_insert(hash_point(here), use, is_here, hash_of).id;
     }
   });
-  std::uint32_t next = 0;
-  for (std::uint32_t use = 0; use < count; ++use) ids[use] = ids[use] == use ? next++ : ids[ids[use]];
-  return ids;
+  release(sorted);
+  return number_by_first_use(first);
 }
 
 /// Fills position_of_vertex: the source's places come first. Returns the ids of the source's exact positions.
-std::vector<std::uint32_t> number_positions(const PreparedMesh& mesh, const LodDag& dag, CanonicalForm& form) {
+UnsetVector<std::uint32_t> number_positions(const PreparedMesh& mesh, const LodDag& dag, CanonicalForm& form) {
   const std::size_t source_count = mesh.exact_on_grid.size(), vertex_count = dag.vertex_position.size();
   UnsetVector<std::uint32_t> use(vertex_count);
   parallel_for_each_index(dag.clusters.size(), 64, [&](std::size_t c) {
     const DagCluster& cluster = dag.clusters[c];
     order_of_use(form, cluster, std::span(use).subspan(cluster.first_vertex, cluster.vertex_count));
   });
-  std::vector<std::uint32_t> ids = number_places(source_count + vertex_count, [&](std::size_t i) {
+  UnsetVector<std::uint32_t> ids = number_places(source_count + vertex_count, [&](std::size_t i) {
     return i < source_count ? mesh.exact_on_grid[i] : dag.vertex_position[use[i - source_count]];
   });
   form.position_of_vertex.resize(vertex_count);
@@ -201,42 +215,57 @@ Status match_level0(const PreparedMesh& mesh, const LodDag& dag, std::span<const
   const Error other{ErrorCode::kCheckFailed, {}, "level 0 is not made of the source's triangles (V101)"};
   std::uint32_t source_positions = 0;
   for (const std::uint32_t position : of_source) source_positions = std::max(source_positions, position + 1);
-  Turned source, level0;
-  source.reserve(mesh.exact_triangles.size());
-  level0.reserve(mesh.exact_triangles.size());
-  std::vector<CanonicalForm::Level0Triangle> places;
-  places.reserve(mesh.exact_triangles.size());
-  for (const auto& t : mesh.exact_triangles) source.add({of_source[t[0]], of_source[t[1]], of_source[t[2]]});
+  std::vector<std::uint32_t> clusters, start;  // of level 0: where their triangles begin in one list
+  std::size_t count = 0;
   for (std::uint32_t c = 0; c < dag.clusters.size(); ++c) {
-    const DagCluster& cluster = dag.clusters[c];
-    if (cluster.own_group.is_valid()) continue;
-    for (std::uint32_t t = cluster.first_triangle; t < cluster.first_triangle + cluster.triangle_count; ++t) {
+    if (dag.clusters[c].own_group.is_valid()) continue;
+    clusters.push_back(c);
+    start.push_back(static_cast<std::uint32_t>(count));
+    count += dag.clusters[c].triangle_count;
+  }
+  if (count != mesh.exact_triangles.size()) return other;
+  Turned source, level0;
+  UnsetVector<CanonicalForm::Level0Triangle> places(count);
+  resize_all(count, source.triangles, level0.triangles, source.turn, level0.turn);
+  std::atomic<bool> is_other = false;
+  parallel_for_each_index(count, kLoopGrain, [&](std::size_t t) {
+    const auto& [a, b, c] = mesh.exact_triangles[t];
+    source.set(t, {of_source[a], of_source[b], of_source[c]});
+  });
+  parallel_for_each_index(clusters.size(), 64, [&](std::size_t i) {
+    const DagCluster& cluster = dag.clusters[clusters[i]];
+    for (std::uint32_t t = 0; t < cluster.triangle_count; ++t) {
+      const std::uint32_t triangle = cluster.first_triangle + t;
       Corners corners{};
       for (std::size_t k = 0; k < 3; ++k) {
-        corners[k] = form.position_of_vertex[cluster.first_vertex + form.triangles[t][k]];
-        if (corners[k] >= source_positions) return other;
+        corners[k] = form.position_of_vertex[cluster.first_vertex + form.triangles[triangle][k]];
+        if (corners[k] >= source_positions) is_other = true;
       }
-      level0.add(corners);
-      places.push_back({c, t});
+      level0.set(start[i] + t, corners);
+      places[start[i] + t] = {clusters[i], triangle};
     }
-  }
-  if (level0.triangles.size() != source.triangles.size()) return other;
+  });
+  if (is_other) return other;
 
   std::vector<std::uint32_t> sources, stored;
   parallel_all([&] { sources = sorted(source.triangles, source_positions); },
                [&] { stored = sorted(level0.triangles, source_positions); });
   form.level0_of_source.resize(sources.size());
   form.vertices_of_source.swap(source.triangles);  // positions there become vertices
-  for (std::size_t i = 0; i < sources.size(); ++i) {
+  parallel_for_each_index(count, kLoopGrain, [&](std::size_t i) {
     const std::uint32_t s = sources[i], l = stored[i];
     WedgeTriangle& vertices = form.vertices_of_source[s];
-    if (vertices != level0.triangles[l]) return other;
+    if (vertices != level0.triangles[l]) {
+      is_other = true;
+      return;
+    }
     const auto [cluster, triangle] = form.level0_of_source[s] = places[l];
     for (std::size_t k = 0; k < 3; ++k) {  // corner by corner: both were turned to the same first place
       vertices[(k + source.turn[s]) % 3] =
           dag.clusters[cluster].first_vertex + form.triangles[triangle][(k + level0.turn[l]) % 3];
     }
-  }
+  });
+  if (is_other) return other;
   return Ok{};
 }
 
@@ -251,7 +280,7 @@ Result<CanonicalForm> canonical_form(const PreparedMesh& mesh, const LodDag& dag
   if (dag.has_several_materials()) form.triangle_material.resize(dag.triangle_material.size());
   parallel_for_each_index(dag.clusters.size(), 16,
                           [&](std::size_t c) { order_cluster(dag, dag.clusters[c], mesh.layout.stride(), form); });
-  const std::vector<std::uint32_t> of_source = number_positions(mesh, dag, form);
+  const UnsetVector<std::uint32_t> of_source = number_positions(mesh, dag, form);
   TRY(match_level0(mesh, dag, of_source, form));
   return form;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "builder/measure/level_meter.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "base/parallel.h"
@@ -44,11 +45,16 @@ LevelMeter::LevelMeter(const PreparedMesh& mesh, SourceTree source, CanonicalFor
                [&] { find_new_vertices(); });
   for (std::uint32_t c = 0; c < dag.clusters.size(); ++c) {
     if (dag.clusters[c].own_group.is_valid()) outputs_[dag.clusters[c].own_group.value].push_back(c);
+  }
+  owner_.resize(units_.vertex_count());
+  parallel_for_each_index(dag.clusters.size(), 64, [&](std::size_t i) {
+    const auto c = static_cast<std::uint32_t>(i);
     for (std::uint32_t u = units_.first_unit(c); u < units_.end_unit(c); ++u) {
       units_of_[c].push_back(u);
-      owner_.resize(owner_.size() + units_.units()[u].vertex_count, c);
+      const SourceUnits::Unit& unit = units_.units()[u];
+      std::fill_n(owner_.begin() + unit.first_vertex, unit.vertex_count, c);
     }
-  }
+  });
 }
 
 void LevelMeter::find_new_vertices() {
@@ -68,13 +74,18 @@ void LevelMeter::find_new_vertices() {
 void LevelMeter::link_source() {
   if (!source_neighbor_.empty()) return;
   const SourceTree::Impl& source = source_.impl();
-  source_neighbor_ = link_edges(source.triangles, source.positions.size(), [&](std::uint32_t position) {
-    return source.vertex_of.empty() ? position : source.vertex_of[position];
-  });
-  source_normal_.resize(source.triangles.size());
-  parallel_for_each_index(source.triangles.size(), 4096, [&](std::size_t t) {
-    source_normal_[t] = unit_normal(source.corners(static_cast<std::uint32_t>(t)));
-  });
+  const auto link = [&] {
+    source_neighbor_ = link_edges(source.triangles, source.positions.size(), [&](std::uint32_t position) {
+      return source.vertex_of.empty() ? position : source.vertex_of[position];
+    });
+  };
+  const auto find_normals = [&] {
+    source_normal_.resize(source.triangles.size());
+    parallel_for_each_index(source.triangles.size(), kLoopGrain, [&](std::size_t t) {
+      source_normal_[t] = unit_normal(source.corners(static_cast<std::uint32_t>(t)));
+    });
+  };
+  parallel_all(link, find_normals);
 }
 
 void LevelMeter::measure_level(std::uint32_t first_group, std::uint32_t end_group) {

@@ -25,21 +25,28 @@ LevelSurface::LevelSurface(const LodDag& dag, const format::PositionGrid& grid, 
   }
   start.push_back(static_cast<std::uint32_t>(count));
   add(dag, grid, form, clusters, count);
-  neighbor = link_edges(triangles, positions.size(), [](std::uint32_t corner) { return corner; });
-  normal.resize(triangles.size());
-  parallel_for_each_index(triangles.size(), kLoopGrain,
-                          [&](std::size_t k) { normal[k] = unit_normal(corners(static_cast<std::uint32_t>(k))); });
-  tree.build({positions, triangles});
-  slot.resize(triangles.size());
-  parallel_for_each_index(triangles.size(), kLoopGrain,
-                          [&](std::size_t i) { slot[tree.triangle_at(TreeSlot(i))] = TreeSlot(i); });
+  const auto link = [&] {
+    neighbor = link_edges(triangles, positions.size(), [](std::uint32_t corner) { return corner; });
+  };
+  const auto find_normals = [&] {
+    normal.resize(triangles.size());
+    parallel_for_each_index(triangles.size(), kLoopGrain,
+                            [&](std::size_t k) { normal[k] = unit_normal(corners(static_cast<std::uint32_t>(k))); });
+  };
+  const auto build_tree = [&] {
+    tree.build({positions, triangles});
+    slot.resize(triangles.size());
+    parallel_for_each_index(triangles.size(), kLoopGrain,
+                            [&](std::size_t i) { slot[tree.triangle_at(TreeSlot(i))] = TreeSlot(i); });
+  };
+  parallel_all(link, find_normals, build_tree);
 }
 
 void LevelSurface::add(const LodDag& dag, const format::PositionGrid& grid, const CanonicalForm& form,
                        std::span<const std::uint32_t> clusters, std::size_t triangle_count) {
   triangles.reserve(triangle_count);
-  cluster.reserve(triangle_count);
-  positions.reserve(triangle_count * 5 / 8);                   // a closed surface has half as many
+  std::vector<std::uint32_t> first_use;                        // per position, a vertex of the DAG
+  first_use.reserve(triangle_count * 5 / 8);                   // a closed surface has half as many
   std::vector<std::uint32_t> own(form.position_count, kNoId);  // of the DAG's positions
   for (const std::uint32_t c : clusters) {
     const DagCluster& from = dag.clusters[c];
@@ -49,14 +56,23 @@ void LevelSurface::add(const LodDag& dag, const format::PositionGrid& grid, cons
         const std::uint32_t vertex = from.first_vertex + dag.triangles[t][k];
         std::uint32_t& id = own[form.position_of_vertex[vertex]];
         if (id == kNoId) {
-          id = static_cast<std::uint32_t>(positions.size());
-          positions.push_back(grid.decode(dag.vertex_position[vertex]));
+          id = static_cast<std::uint32_t>(first_use.size());
+          first_use.push_back(vertex);
         }
         corners[k] = id;
       }
-      cluster.push_back(c);
     }
   }
+  const auto decode = [&] {
+    positions.resize(first_use.size());
+    parallel_for_each_index(first_use.size(), kLoopGrain,
+                            [&](std::size_t p) { positions[p] = grid.decode(dag.vertex_position[first_use[p]]); });
+  };
+  const auto name_clusters = [&] {
+    cluster.reserve(triangle_count);
+    for (const std::uint32_t c : clusters) cluster.insert(cluster.end(), dag.clusters[c].triangle_count, c);
+  };
+  parallel_all(decode, name_clusters);
 }
 
 }  // namespace meshlode::builder

@@ -39,6 +39,8 @@ class SourceUnits {
   [[nodiscard]] std::span<const Triangle> triangles(const Unit& unit) const {
     return std::span(triangles_).subspan(unit.first_triangle, unit.triangle_count);
   }
+  /// Of all units together.
+  [[nodiscard]] std::size_t vertex_count() const { return vertices_.size(); }
   /// The units of a cluster of level 0.
   [[nodiscard]] std::uint32_t first_unit(std::uint32_t cluster) const { return first_unit_[cluster]; }
   [[nodiscard]] std::uint32_t end_unit(std::uint32_t cluster) const { return first_unit_[cluster + 1]; }

@@ -9,9 +9,14 @@
 
 namespace meshlode::builder {
 
-/// Different vertices of all primitives together, told apart by position and by what `layout` keeps: of those whose
-/// position's hash falls into a share that leaves a hundred thousand, exactly; the others are taken to be like them
-/// (Flajolet 1990). With an empty layout these are positions.
-[[nodiscard]] std::uint64_t count_wedges(const scene::SourceMesh& mesh, const AttributeLayout& layout);
+/// Different vertices of all primitives together.
+struct WedgeCounts {
+  std::uint64_t positions = 0;
+  std::uint64_t wedges = 0;  ///< told apart by position and by what the layout keeps
+};
+
+/// Of vertices whose position's hash falls into a share that leaves a hundred thousand, exactly; the others are taken
+/// to be like them (Flajolet 1990).
+[[nodiscard]] WedgeCounts count_wedges(const scene::SourceMesh& mesh, const AttributeLayout& layout);
 
 }  // namespace meshlode::builder

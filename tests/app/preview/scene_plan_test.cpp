@@ -137,8 +137,10 @@ TEST(CountWedges, TellsVerticesApartByWhatIsKept) {
   for (const Vec3d& p : facets.primitives[0].positions) positions.emplace_back(p.x + 0.0, p.y + 0.0, p.z + 0.0);
   std::sort(positions.begin(), positions.end());
   positions.erase(std::unique(positions.begin(), positions.end()), positions.end());
-  EXPECT_EQ(builder::count_wedges(facets, {}), positions.size());
-  EXPECT_GT(builder::count_wedges(facets, with_normals), positions.size());
+  EXPECT_EQ(builder::count_wedges(facets, {}).positions, positions.size());
+  EXPECT_EQ(builder::count_wedges(facets, {}).wedges, positions.size());
+  EXPECT_EQ(builder::count_wedges(facets, with_normals).positions, positions.size());
+  EXPECT_GT(builder::count_wedges(facets, with_normals).wedges, positions.size());
 }
 
 TEST(Features, SayWhatBecomesOfEach) {
