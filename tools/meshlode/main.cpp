@@ -3,7 +3,9 @@
 #include <malloc.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <cstdio>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -11,6 +13,7 @@
 
 #include "base/guarded.h"
 #include "base/printable.h"
+#include "base/system.h"
 #include "help_text.h"
 #include "library_versions.h"
 #include "options.h"
@@ -107,12 +110,24 @@ void give_back_large_arrays() {
 #endif
 }
 
+/// Each of malloc's arenas, of which every thread wants one, reserves 64 MiB of addresses. Where a limit (ulimit -v)
+/// leaves none, glibc asks the system for every allocation by itself: with 16 threads under 150 MB that is 25 times as
+/// slow. Fewer arenas than threads cost 10%, so that a quarter of the addresses are for arenas.
+void share_arenas_where_addresses_are_few() {
+#ifdef __GLIBC__
+  constexpr std::uint64_t kArena = 64ULL << 20U, kShare = 4;
+  const std::optional<std::uint64_t> left = system::memory_left();
+  if (left) mallopt(M_ARENA_MAX, static_cast<int>(std::clamp<std::uint64_t>(*left / (kShare * kArena), 1, 1024)));
+#endif
+}
+
 }  // namespace
 }  // namespace meshlode::cli
 
 int main(int argc, char** argv) {
   using meshlode::cli::print_error;
   meshlode::cli::give_back_large_arrays();
+  meshlode::cli::share_arenas_where_addresses_are_few();
   meshlode::cli::watch_signals();
   meshlode::cli::end_where_memory_runs_out();
   const auto arguments = std::span<char* const>(argv, static_cast<std::size_t>(argc)).subspan(argc > 0 ? 1 : 0);
