@@ -20,9 +20,9 @@ for verb in $verbs; do
   for option in $("$MESHLODE" "$verb" --help | sed -nE 's/^( {2}|      )(-[^ ]*( --[^ ]*)?).*/\2/p' | tr , ' '); do
     options=$((options + 1))
     [[ $offered == *" $option "* ]] || echo "bash lacks $verb $option"
-    grep -qE -e "[')]$option[]=+[]" <<<"$in_zsh" || echo "zsh lacks $verb $option"
+    [[ $in_zsh == *[\'\)]"$option"[]=+[]* ]] || echo "zsh lacks $verb $option"
     case $option in --*) fish="-l ${option#--}" ;; *) fish="-s ${option#-}" ;; esac
-    grep -qF -e " $fish " <<<"$in_fish" || echo "fish lacks $verb $option"
+    [[ $in_fish == *" $fish "* ]] || echo "fish lacks $verb $option"
   done
 done
 [ "$options" -gt 100 ] && echo "options"

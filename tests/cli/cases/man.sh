@@ -7,8 +7,9 @@ verbs=$("$MESHLODE" --help | sed -n '/^Commands:/,/^$/s/^  \([a-z][a-z]*\) .*/\1
 for verb in $verbs; do
   page=pages/meshlode-$verb.1
   "$MESHLODE" man "$verb" | cmp - "$page"
+  text=$(<"$page")
   for option in $("$MESHLODE" "$verb" --help | sed -nE 's/^( {2}|      )(-[^ ]*( --[^ ]*)?).*/\2/p' | tr , ' '); do
-    grep -qF -e "\\fB${option//-/\\-}\\fR" "$page" || echo "$page lacks $option"
+    [[ $text == *"\\fB${option//-/\\-}\\fR"* ]] || echo "$page lacks $option"
   done
   grep -qF -e "\\fB$verb\\fR" pages/meshlode.1 || echo "meshlode.1 lacks $verb"
 done
@@ -22,8 +23,9 @@ if command -v man >/dev/null; then
   for page in pages/*.1; do LC_ALL=C.UTF-8 MANWIDTH=100 man --warnings -l "$page" 2>&1 >/dev/null; done
 fi
 for page in pages/*.1; do
+  text=$'\n'$(<"$page")$'\n'
   for section in NAME SYNOPSIS DESCRIPTION OPTIONS ENVIRONMENT "EXIT STATUS" "SEE ALSO"; do
-    grep -qx ".SH $section" "$page" || echo "$page lacks $section"
+    [[ $text == *$'\n'".SH $section"$'\n'* ]] || echo "$page lacks $section"
   done
 done
 grep -lx ".SH FILES" pages/*.1
