@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
+#include <cstdlib>
 #include <optional>
 #include <span>
 #include <string>
@@ -112,12 +113,15 @@ void give_back_large_arrays() {
 
 /// Each of malloc's arenas, of which every thread wants one, reserves 64 MiB of addresses. Where a limit (ulimit -v)
 /// leaves none, glibc asks the system for every allocation by itself: with 16 threads under 150 MB that is 25 times as
-/// slow. Fewer arenas than threads cost 10%, so that a quarter of the addresses are for arenas.
+/// slow. Fewer arenas than threads cost 10%, so that a quarter of the addresses are for arenas. So many that there is
+/// one for each thread are left to glibc, and so is what the user sets.
 void share_arenas_where_addresses_are_few() {
 #ifdef __GLIBC__
-  constexpr std::uint64_t kArena = 64ULL << 20U, kShare = 4;
+  constexpr std::uint64_t kArena = 64ULL << 20U, kShare = 4, kMany = 64;
   const std::optional<std::uint64_t> left = system::memory_left();
-  if (left) mallopt(M_ARENA_MAX, static_cast<int>(std::clamp<std::uint64_t>(*left / (kShare * kArena), 1, 1024)));
+  if (!left || std::getenv("MALLOC_ARENA_MAX") != nullptr) return;
+  const std::uint64_t arenas = std::max<std::uint64_t>(*left / (kShare * kArena), 1);
+  if (arenas < kMany) mallopt(M_ARENA_MAX, static_cast<int>(arenas));
 #endif
 }
 
@@ -127,9 +131,9 @@ void share_arenas_where_addresses_are_few() {
 int main(int argc, char** argv) {
   using meshlode::cli::print_error;
   meshlode::cli::give_back_large_arrays();
+  meshlode::cli::end_where_memory_runs_out();
   meshlode::cli::share_arenas_where_addresses_are_few();
   meshlode::cli::watch_signals();
-  meshlode::cli::end_where_memory_runs_out();
   const auto arguments = std::span<char* const>(argv, static_cast<std::size_t>(argc)).subspan(argc > 0 ? 1 : 0);
   const auto code = meshlode::guarded({}, [&]() -> meshlode::Result<int> { return meshlode::cli::run(arguments); });
   return code ? *code : print_error(code.error());

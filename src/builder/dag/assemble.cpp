@@ -48,7 +48,8 @@ void write_cluster(const BuildPool& pool, const BuildCluster& source, const DagC
 }
 
 /// Gives every cluster its place and writes them all. `sources`: of the pool, in order.
-/// What has been written is freed in the pool, so that little of it is there twice.
+/// What has been written is freed in the pool, so that little of it is there twice: vertices alone, while they are
+/// copied.
 void write_clusters(BuildPool& pool, const std::vector<ClusterId>& sources, std::size_t stride, LodDag& dag) {
   constexpr std::size_t kGrain = 16;
   std::uint32_t vertices = 0, triangles = 0;

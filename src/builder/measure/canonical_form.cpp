@@ -139,14 +139,16 @@ UnsetVector<std::uint32_t> number_by_first_use(std::span<const std::uint32_t> fi
     for (std::size_t use = begin; use < end; ++use) next[chunk + 1] += first[use] == use ? 1 : 0;
   });
   std::partial_sum(next.begin(), next.end(), next.begin());
-  UnsetVector<std::uint32_t> number(first.size()), ids(first.size());
+  UnsetVector<std::uint32_t> ids(first.size());
   parallel_for_each_chunk(first.size(), kChunk, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
     std::uint32_t id = next[chunk];
     for (std::size_t use = begin; use < end; ++use) {
-      if (first[use] == use) number[use] = id++;
+      if (first[use] == use) ids[use] = id++;
     }
   });
-  parallel_for_each_index(first.size(), kLoopGrain, [&](std::size_t use) { ids[use] = number[first[use]]; });
+  parallel_for_each_index(first.size(), kLoopGrain, [&](std::size_t use) {
+    if (first[use] != use) ids[use] = ids[first[use]];
+  });
   return ids;
 }
 

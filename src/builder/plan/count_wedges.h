@@ -12,7 +12,7 @@ namespace meshlode::builder {
 /// Different vertices of all primitives together.
 struct WedgeCounts {
   std::uint64_t positions = 0;
-  std::uint64_t wedges = 0;  ///< told apart by position and by what the layout keeps
+  std::uint64_t wedges = 0;  ///< told apart by position and by what the layout keeps: no fewer
 };
 
 /// Of vertices whose position's hash falls into a share that leaves a hundred thousand, exactly; the others are taken
