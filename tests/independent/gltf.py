@@ -79,6 +79,7 @@ class Gltf:
         for i, buffer in enumerate(root.get("buffers", [])):
             data = binary if i == 0 and binary is not None and "uri" not in buffer else self.bytes_of(buffer)
             self.buffers.append(data)
+        self.cut_parents()
         self.expand_instances()
         self.posed = {}
         if self.root.get("skins") and self.root.get("meshes"):
@@ -88,6 +89,14 @@ class Gltf:
                 pass
         if len(self.root.get("meshes", [])) > 1:
             self.merge_meshes()
+
+    def cut_parents(self):
+        """A node that a scene lists is a root, whatever is above it (docs/reference/input.md)."""
+        roots = {n for scene in self.root.get("scenes", []) for n in scene.get("nodes", [])}
+        for node in self.root.get("nodes", []):
+            children = node.pop("children", [])
+            if children := [c for c in children if c not in roots]:
+                node["children"] = children
 
     def merge_meshes(self):
         """Of equal meshes the first is drawn in the place of the others, which lose their primitives (docs/reference/input.md)."""
@@ -273,14 +282,23 @@ class Gltf:
                    "base_color_uv_set": uv_set}
 
     def motions(self):
-        """Rigid animations: a list for each of (node, path, interpolation, times, values), without weights and joints."""
-        joints = {n for skin in self.root.get("skins", []) for n in skin["joints"]}
+        """Rigid animations: a list for each of (node, path, interpolation, times, values), without weights and without joints
+        that carry nothing else."""
+        nodes = self.root.get("nodes", [])
+        parent = {c: n for n, node in enumerate(nodes) for c in node.get("children", [])}
+        shown = set()
+        for n in (n for n, node in enumerate(nodes) if node.keys() & {"mesh", "camera", "extensions"}):
+            while n is not None and n not in shown:
+                shown.add(n)
+                n = parent.get(n)
+        joints = {n for skin in self.root.get("skins", []) for n in skin["joints"]} - shown
         for animation in self.root.get("animations", []):
             rows = []
             for channel in animation["channels"]:
                 target, sampler = channel["target"], animation["samplers"][channel["sampler"]]
                 if "node" in target and target["path"] != "weights" and target["node"] not in joints:
-                    rows.append((target["node"], target["path"], sampler.get("interpolation", "LINEAR"),
+                    how = sampler.get("interpolation", "LINEAR")
+                    rows.append((target["node"], target["path"], how if isinstance(how, str) else "LINEAR",
                                  self.accessor(sampler["input"]), self.accessor(sampler["output"])))
             yield sorted(rows, key=lambda row: row[:3])
 

@@ -157,14 +157,15 @@ def obj_cases():
     yield "mixed_all", VT + VN + square(0, 1, "{0}/{1}/1") + square(2, 5) + square(4, 9, "{0}//2") + square(6, 13, "{0}/{1}"), 4
     yield "mixed_materials", "mtllib a.mtl\n" + VT + "usemtl painted\n" + square(0, 1, "{0}/{1}") + "usemtl plain\n" + \
         square(2, 5), 2
-    yield "dangling_vt", V + f(lambda i, k: f"{i + 1}/{k + 1}"), CUBE, "--repair"
-    yield "dangling_vn", V + f(lambda i, k: f"{i + 1}//{k + 1}"), CUBE, "--repair"
+    yield "dangling_vt", V + f(lambda i, k: f"{i + 1}/{k + 1}"), CUBE
+    yield "dangling_vn", V + f(lambda i, k: f"{i + 1}//{k + 1}"), CUBE
     for name, points, area in (("wall", WALL, 12), ("comb", COMB, 8), ("letter", LETTER, 7), ("windows", WINDOWS, 22)):
         yield name, polygon(points), area * 3 ** 0.5
         yield name + "_turned", polygon(points[::-1]), area * 3 ** 0.5
         yield name + "_textured", "mtllib a.mtl\nusemtl painted\n" + "".join(f"vt {x / 4} {y / 4}\n" for x, y in points) + \
             "".join(f"v {x} {y} {x + y}\n" for x, y in points) + \
             "f " + " ".join(f"{i + 1}/{i + 1}" for i in range(len(points))) + "\n", area * 3 ** 0.5
+    yield "bent", "v -1 0 1\nv 1 0 1\nv 1 0 -1\nv -1 0 -1\nv 0 1 -1\nf 1 2 3 4 5\n", 1 + 2 ** 0.5 + 5 ** 0.5
     yield "objects", "o left\n" + square(0, 1) + "o right side\n" + square(2, 5), 2
     yield "groups", "g left\n" + square(0, 1) + "g right\n" + square(2, 5), 2
     parts = PLAIN.splitlines(True)

@@ -312,6 +312,8 @@ class Scene:
         how = r.random()
         if how < 0.6:
             self.root["scenes"] = [{"nodes": roots, "name": "all"}]
+            if r.random() < 0.3:  # as UniGLTF does: a parent that no scene lists, which moves nothing
+                nodes.append({"name": "tmpParent", "translation": [5, 6, 7], "children": r.sample(roots, r.randint(1, len(roots)))})
             if r.random() < 0.7:
                 self.root["scene"] = 0
         elif how < 0.85:

@@ -2,6 +2,7 @@
 // What travels unchanged: images, materials and rigid animation, with nothing that points to bytes that are gone.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstring>
 #include <nlohmann/json.hpp>
 
@@ -97,8 +98,9 @@ TEST(ImportDocument, RigidAnimationIsCompactedAndDeformingAnimationIsNot) {
   const int moves = b.floats({0, 0, 0, 3, 4, 5}, "VEC3", 3);  // 2
   const int weights = b.floats({0, 1}, "SCALAR", 1);          // 3
   const int turns = b.array<std::int16_t>({0, 0, 0, 32767, 0, 0, 32767, 0}, 5122, "VEC4", 4, ",\"normalized\":true");
-  const auto sampler = [&](int output) {
-    return "{\"input\":" + std::to_string(times) + ",\"output\":" + std::to_string(output) + "}";
+  const auto sampler = [&](int output, const std::string& interpolation = "\"STEP\"") {
+    return "{\"input\":" + std::to_string(times) + ",\"output\":" + std::to_string(output) +
+           ",\"interpolation\":" + interpolation + "}";
   };
   const auto channel = [](int s, int node, const std::string& path) {
     return "{\"sampler\":" + std::to_string(s) + ",\"target\":{\"node\":" + std::to_string(node) + ",\"path\":\"" +
@@ -107,9 +109,9 @@ TEST(ImportDocument, RigidAnimationIsCompactedAndDeformingAnimationIsNot) {
   const auto scene = b.import(
       "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}],\"nodes\":[{\"mesh\":0,\"skin\":0},{}],"
       "\"skins\":[{\"joints\":[1]}],\"animations\":[{\"name\":\"run\",\"samplers\":[" +
-      sampler(weights) + "," + sampler(moves) + "," + sampler(turns) + "],\"channels\":[" + channel(0, 0, "weights") +
-      "," + channel(1, 0, "translation") + "," + channel(2, 0, "rotation") + "," + channel(1, 1, "translation") +
-      "]}]");
+      sampler(weights) + "," + sampler(moves, "0") + "," + sampler(turns) + "],\"channels\":[" +
+      channel(0, 0, "weights") + "," + channel(1, 0, "translation") + "," + channel(2, 0, "rotation") + "," +
+      channel(1, 1, "translation") + "]}]");
   ASSERT_TRUE(scene) << describe(scene);
   const json document = json::parse(scene->document);
   const json& animation = document["animations"][0];
@@ -129,9 +131,14 @@ TEST(ImportDocument, RigidAnimationIsCompactedAndDeformingAnimationIsNot) {
   const json& rotation = document["accessors"][animation["samplers"][1]["output"].get<std::size_t>()];
   EXPECT_EQ(rotation["componentType"], 5122);
   EXPECT_EQ(rotation["normalized"], true);
-  bool is_reported = false;
-  for (const scene::LeftOut& l : scene->left_out) is_reported = is_reported || l.what == "animation 0: 2 channels";
-  EXPECT_TRUE(is_reported);
+  // A number, as Babylon's exporter for Maya writes it, is no interpolation.
+  EXPECT_FALSE(animation["samplers"][0].contains("interpolation"));
+  EXPECT_EQ(animation["samplers"][1]["interpolation"], "STEP");
+  for (const std::string what : {"animation 0: 2 channels", "interpolations of animation samplers (1)"}) {
+    const bool is_reported = std::any_of(scene->left_out.begin(), scene->left_out.end(),
+                                         [&](const scene::LeftOut& l) { return l.what == what; });
+    EXPECT_TRUE(is_reported) << what;
+  }
 }
 
 }  // namespace

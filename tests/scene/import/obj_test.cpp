@@ -97,9 +97,12 @@ TEST_F(ObjAsWritten, FacesKeepTheAttributesThatTheyHave) {
   EXPECT_EQ(all_left_out(*scene), "texture coordinates: 1 face: only some corners have them; ");
 }
 
-TEST_F(ObjAsWritten, AttributesThatAreNotThereCostNoFaceUnderRepair) {
+TEST_F(ObjAsWritten, AttributesThatAreNotThereCostNoFaceAndPositionsCostOneUnderRepair) {
   const std::string bytes = kSquareObj + "f 1/1/1 2/2/1 9/3/1\nf 1/1/1 2/2/1 3/9/1\nf 1/1/1 3/3/1 4/4/7\n";
-  EXPECT_FALSE(read("a.obj", bytes));
+  EXPECT_TRUE(read("a.obj", kSquareObj + "f 1/1/1 2/2/1 3/9/1\nf 1/1/1 3/3/1 4/4/7\n"));
+  const auto refused = read("a.obj", bytes);
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().detail.find("--repair drops the face"), std::string::npos) << refused.error().detail;
   const auto scene = read("a.obj", bytes, {.repair = true});
   ASSERT_TRUE(scene) << describe(scene);
   EXPECT_EQ(triangle_count(*scene), 2U);

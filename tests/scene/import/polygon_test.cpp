@@ -166,7 +166,8 @@ TEST_F(ImportPolygons, ObjFaultsAreNamedByTheirLine) {
   expect_invalid(read("a.obj", vertices + "f 1 2 4\n"), "line 4");
   expect_invalid(read("a.obj", vertices + "f 1 2 0\n"), "line 4");
   expect_invalid(read("a.obj", vertices + "f 1 2 -4\n"), "line 4");
-  expect_invalid(read("a.obj", vertices + "f 1/1 2 3\n"), "line 4");
+  expect_invalid(read("a.obj", vertices + "f 1/x 2 3\n"), "line 4");
+  expect_invalid(read("a.obj", vertices + "f 1//99999999999999999999 2 3\n"), "line 4");
   expect_invalid(read("a.obj", vertices + "f /1 2 3\n"), "line 4");
   expect_invalid(read("a.obj", vertices + "f 1 2 99999999999999999999\n"), "line 4");
   expect_invalid(read("a.obj", vertices + "v 1 2\n"), "line 4");

@@ -46,6 +46,32 @@ TEST(ImportScene, InstancesAreVisitedDepthFirstWithTransformsComposedInDoubles) 
   EXPECT_EQ(apply(scene->instances[2].transform, {1, 1, 1}), Vec3d(1000002, 2, 2.001));
 }
 
+// As UniGLTF writes scenes: the object below a parent that the scene does not list.
+TEST(ImportScene, WhatASceneListsIsShownWithoutItsParents) {
+  const std::string nodes =
+      ",\"nodes\":[{\"name\":\"tmpParent\",\"translation\":[9,0,0],\"children\":[1,2]},"
+      "{\"mesh\":0,\"translation\":[1,0,0],\"children\":[3]},{\"mesh\":0},{\"mesh\":0,\"translation\":[0,1,0]}],";
+  auto scene = square().import(kMesh + nodes + "\"scenes\":[{\"nodes\":[1]}]");
+  ASSERT_TRUE(scene) << describe(scene);
+  ASSERT_EQ(scene->instances.size(), 2U);
+  EXPECT_EQ(apply(scene->instances[0].transform, {0, 0, 0}), Vec3d(1, 0, 0));
+  EXPECT_EQ(apply(scene->instances[1].transform, {0, 0, 0}), Vec3d(1, 1, 0));
+  ASSERT_EQ(scene->left_out.size(), 1U);
+  EXPECT_EQ(scene->left_out[0].what, "parents of nodes that a scene lists (1)");
+  // What is carried has no scene that lists a child, and the parent keeps its other one.
+  EXPECT_NE(scene->document.find("\"children\":[2]"), std::string::npos) << scene->document;
+  scene = square().import(kMesh + nodes + "\"scenes\":[{\"nodes\":[1]},{\"nodes\":[2,1]}],\"scene\":1");
+  ASSERT_TRUE(scene) << describe(scene);
+  EXPECT_EQ(scene->instances.size(), 3U);
+  EXPECT_EQ(scene->document.find("children\":[]"), std::string::npos) << scene->document;
+  // Listed itself and by its grandparent, in one scene or in two: shown twice or in two places.
+  for (const char* scenes : {"\"scenes\":[{\"nodes\":[0,3]}]", "\"scenes\":[{\"nodes\":[3]},{\"nodes\":[0]}]"}) {
+    scene = square().import(kMesh + nodes + scenes);
+    ASSERT_FALSE(scene);
+    EXPECT_NE(describe(scene).find("node 3 is listed, and node 0 above it too"), std::string::npos) << describe(scene);
+  }
+}
+
 TEST(ImportScene, WithoutScenesEveryRootIsDrawnAndWithoutADefaultSceneTheFirst) {
   const std::string nodes = ",\"nodes\":[{\"mesh\":0,\"children\":[1]},{\"mesh\":0},{\"mesh\":0}]";
   auto scene = square().import(kMesh + nodes);

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <random>
@@ -127,6 +128,66 @@ TEST(TriangulatePolygon, AnyPointsAtAllEnd) {
     for (auto& [x, y] : points) x *= s / 8, y *= s / 8;
     EXPECT_EQ(triangulate_polygon(points).triangles.size(), 10U);
   }
+}
+
+struct Made {
+  std::vector<std::uint32_t> indices;
+  Vec3d area{0.0};       ///< the sum over the triangles, twice
+  Vec3d of_border{0.0};  ///< the polygon's, by its sides
+  bool is_said = false;  ///< that the shape is a guess
+};
+
+Made triangulate_face(const std::vector<Vec3d>& positions) {
+  Made out;
+  std::vector<std::uint32_t> polygon;
+  for (std::uint32_t i = 0; i < positions.size(); ++i) polygon.push_back(i);
+  FaceTriangles faces(positions);
+  faces.append(polygon, out.indices);
+  const auto at = [&](std::size_t i) { return positions[out.indices[i]]; };
+  for (std::size_t i = 0; i + 2 < out.indices.size(); i += 3)
+    out.area += glm::cross(at(i + 1) - at(i), at(i + 2) - at(i));
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    out.of_border += glm::cross(positions[i], positions[(i + 1) % positions.size()]);
+  }
+  std::vector<LeftOut> left_out;
+  faces.report(left_out);
+  out.is_said = !left_out.empty();
+  return out;
+}
+
+/// Sides that lie on one another from the front of a face that is not flat: trimesh's polygonfaces.obj.
+TEST(FaceTriangles, CornersThatTheFrontDoesNotShowAreKept) {
+  const std::vector<Vec3d> bent{{-5, 0, 5}, {5, 0, 5}, {5, 0, -5}, {-5, 0, -5}, {0, 5, -5}};
+  const Made made = triangulate_face(bent);
+  EXPECT_EQ(made.indices.size(), 9U);
+  EXPECT_EQ(made.area, made.of_border);
+  EXPECT_FALSE(made.is_said);
+  // Two corners in a row; and a spike that is one, which has no area to be kept.
+  const Made two = triangulate_face({{-5, 0, 5}, {5, 0, 5}, {5, 0, -5}, {-5, 1, -5}, {-4, 2, -5}, {0, 5, -5}});
+  EXPECT_EQ(two.indices.size(), 12U);
+  EXPECT_EQ(two.area, two.of_border);
+  const Made flat = triangulate_face({{-5, 0, 5}, {5, 0, 5}, {5, 0, -5}, {-5, 0, -5}, {0, 0, -5}});
+  EXPECT_EQ(flat.indices.size(), 6U);
+  EXPECT_EQ(flat.area, flat.of_border);
+}
+
+/// Corners of a coarse grid, so that sides meet, fold and lie on one another in every way.
+TEST(FaceTriangles, WhatIsMissingOfABentFaceIsSaid) {
+  std::mt19937 random(1);
+  int whole = 0;
+  for (int trial = 0; trial < 20000; ++trial) {
+    std::vector<Vec3d> positions(5 + random() % 4);
+    for (Vec3d& p : positions) p = {random() % 4, random() % 4, random() % 4};
+    if (std::set<std::array<double, 3>> places; !std::all_of(positions.begin(), positions.end(), [&](const Vec3d& p) {
+          return places.insert({p.x, p.y, p.z}).second;
+        })) {
+      continue;
+    }
+    const Made made = triangulate_face(positions);
+    whole += made.is_said ? 0 : 1;
+    EXPECT_TRUE(made.is_said || glm::length(made.area - made.of_border) < 1e-9) << trial;
+  }
+  EXPECT_GT(whole, 2000);
 }
 
 /// Large faces of an odd shape: the work of one, and of all together, is bounded.

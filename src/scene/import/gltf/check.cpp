@@ -155,8 +155,7 @@ class GltfChecker : public JsonChecker {
     for (std::size_t i = 0; i < samplers.size(); ++i) {
       const std::string here = path + "/samplers/" + std::to_string(i);
       if (!required_index(samplers[i], here, "input", accessor_count) ||
-          !required_index(samplers[i], here, "output", accessor_count) ||
-          !optional_string(samplers[i], here, "interpolation")) {
+          !required_index(samplers[i], here, "output", accessor_count)) {
         return false;
       }
     }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Nodes form trees (glTF 2.0, section 3.5.2): no node has two parents, none is its own ancestor, scenes name roots.
+// Nodes form trees (glTF 2.0, section 3.5.2): no node has two parents, none is its own ancestor. Scenes should list
+// roots; a node below others passes where no scene shows those (mend_gltf).
 #include "scene/import/gltf/check_base.h"
 #include "scene/import/gltf/gltf.h"
 
@@ -107,6 +108,7 @@ class NodeChecker : public JsonChecker {
   bool check_scenes() {
     const auto& scenes = root_.items("scenes");
     std::vector<std::size_t> seen_in(root_.items("nodes").size(), scenes.size());
+    std::vector<bool> is_listed(seen_in.size(), false);
     for (std::size_t s = 0; s < scenes.size(); ++s) {
       const std::string path = "/scenes/" + std::to_string(s);
       if (!optional_string(scenes[s], path, "name") ||
@@ -116,10 +118,27 @@ class NodeChecker : public JsonChecker {
       const auto& roots = scenes[s].items("nodes");
       for (std::size_t i = 0; i < roots.size(); ++i) {
         const std::uint64_t node = roots[i].index().value_or(0);
-        const std::string here = path + "/nodes/" + std::to_string(i);
-        if (parent_[node] != kNoId) return fail(here, "node " + std::to_string(node) + " is not a root");
-        if (seen_in[node] == s) return fail(here, "node " + std::to_string(node) + " is named twice");
+        if (seen_in[node] == s) {
+          return fail(path + "/nodes/" + std::to_string(i), "node " + std::to_string(node) + " is named twice");
+        }
         seen_in[node] = s;
+        is_listed[node] = true;
+      }
+    }
+    return check_ancestors(is_listed);
+  }
+
+  /// Of two nodes of which one is below the other scenes list one at most: else it is shown twice, or in two places.
+  bool check_ancestors(const std::vector<bool>& is_listed) {
+    std::vector<bool> is_free(is_listed.size(), false);  // neither it nor what is above it is listed
+    for (std::size_t node = 0; node < is_listed.size(); ++node) {
+      if (!is_listed[node]) continue;
+      for (std::uint32_t up = parent_[node]; up != kNoId && !is_free[up]; up = parent_[up]) {
+        if (is_listed[up]) {
+          return fail("/scenes",
+                      "node " + std::to_string(node) + " is listed, and node " + std::to_string(up) + " above it too");
+        }
+        is_free[up] = true;
       }
     }
     return true;

@@ -18,6 +18,7 @@
 #include "base/ids.h"
 #include "scene/import/gltf/tinygltf.h"
 #include "scene/import/json.h"
+#include "scene/scene.h"
 
 namespace meshlode::scene {
 
@@ -119,6 +120,10 @@ struct GltfAsset {
 [[nodiscard]] Status check_gltf_meshopt(const Json& root, const std::string& file);
 /// Optional extensions that geometry would be lost without. \pre the other checks passed. Errors: kUnsupported.
 [[nodiscard]] Status check_gltf_lost_geometry(const Json& root, const std::string& file);
+
+/// What common writers get wrong and every viewer shows, put right in a checked tree and named: a node that a scene
+/// lists below others that no scene shows becomes a root; an interpolation that is not a string counts as missing.
+void mend_gltf(Json& root, std::vector<LeftOut>& left_out);
 
 /// tinygltf's model of a checked tree; nothing that it would open is handed to it. What it has no number for is -1.
 /// Errors: kInvalid and kUnsupported, without a place.

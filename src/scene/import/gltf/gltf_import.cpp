@@ -260,6 +260,8 @@ Result<Scene> import_gltf(const std::filesystem::path& path, std::span<const std
   TRY_LET(root, read_tree(asset.file, container->text));
   asset.root = std::move(*root);
   TRY(check_gltf(asset.root, asset.file));
+  Scene scene;
+  mend_gltf(asset.root, scene.left_out);
 
   GltfFiles files(path.parent_path(), options.files_read, options.allow_outside);
   files.hash(bytes);
@@ -275,7 +277,6 @@ Result<Scene> import_gltf(const std::filesystem::path& path, std::span<const std
       std::max(16 * stream_bytes, std::min(kMeshoptMaxExpansion * stream_bytes, options.max_decoded));
   TRY(decode_meshopt_views(asset, max_view_bytes));
 
-  Scene scene;
   // Streams may overlap, and one of Draco's may come out of a compressed view: no more of them than the files have.
   const std::uint64_t draco_bytes = std::min(count_draco_bytes(asset), file_bytes);
   DecodeBudget budget(file_bytes, std::min(draco_bytes + stream_bytes, file_bytes), options.max_decoded);

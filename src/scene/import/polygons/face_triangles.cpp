@@ -93,20 +93,54 @@ bool FaceTriangles::append_triangulated(std::span<const std::uint32_t> polygon, 
   std::vector<std::array<double, 2>> points;
   points.reserve(n);
   for (const std::uint32_t v : polygon) points.push_back({positions_[v][axes[0]], positions_[v][axes[1]]});
-  const PolygonTriangles made = triangulate_polygon(points);
-  if (made.triangles.empty() || !made.is_simple) ++crossing_;
+  PolygonTriangles made = triangulate_polygon(points);
+  if (made.triangles.empty() || !made.is_simple || !add_spikes(polygon, area, made)) ++crossing_;
   if (made.triangles.empty()) return append_first_visits(polygon, indices);
   for (const auto& [a, b, c] : made.triangles) indices.insert(indices.end(), {polygon[a], polygon[b], polygon[c]});
   return true;
 }
 
-bool FaceTriangles::append_first_visits(std::span<const std::uint32_t> polygon, std::vector<std::uint32_t>& indices) {
+bool FaceTriangles::add_spikes(std::span<const std::uint32_t> polygon, const Vec3d& area,
+                               PolygonTriangles& made) const {
+  constexpr double kRounding = 1e-9;  // of areas, far above what their sums lose and below what can be seen
+  Vec3d missing = area;
+  double size = 0.0;
+  std::vector<bool> is_used(polygon.size(), false);
+  const auto take = [&](const std::array<std::uint32_t, 3>& t) {
+    const Vec3d of_one = area_vector(positions_, std::array{polygon[t[0]], polygon[t[1]], polygon[t[2]]});
+    missing -= of_one;
+    size += glm::length(of_one);
+    for (const std::uint32_t corner : t) is_used[corner] = true;
+  };
+  for (const auto& t : made.triangles) take(t);
+  if (glm::length(missing) <= kRounding * size || first_visits(polygon).size() < polygon.size()) return true;
+  const auto n = static_cast<std::uint32_t>(polygon.size());
+  const auto begin = static_cast<std::uint32_t>(std::find(is_used.begin(), is_used.end(), true) - is_used.begin());
+  const std::size_t made_count = made.triangles.size();
+  std::uint32_t last_used = begin;
+  for (std::uint32_t step = 1; step <= n; ++step) {
+    const std::uint32_t corner = (begin + step) % n, before = (begin + step - 1) % n;
+    if (before != last_used) made.triangles.push_back({last_used, before, corner});
+    if (is_used[corner]) last_used = corner;
+  }
+  for (std::size_t i = made_count; i < made.triangles.size(); ++i) take(made.triangles[i]);
+  if (glm::length(missing) <= kRounding * size) return true;
+  made.triangles.resize(made_count);
+  return false;
+}
+
+std::vector<std::uint32_t> FaceTriangles::first_visits(std::span<const std::uint32_t> polygon) const {
   std::vector<std::uint32_t> once;
   std::set<std::array<double, 3>> places;
   for (const std::uint32_t v : polygon) {
     const Vec3d& p = positions_[v];
     if (places.insert({p.x, p.y, p.z}).second) once.push_back(v);
   }
+  return once;
+}
+
+bool FaceTriangles::append_first_visits(std::span<const std::uint32_t> polygon, std::vector<std::uint32_t>& indices) {
+  const std::vector<std::uint32_t> once = first_visits(polygon);
   if (once.size() < 3 || once.size() == polygon.size()) return false;
   append_fan(once, find_fan(positions_, once, area_vector(positions_, once)), indices);
   return true;

@@ -12,6 +12,8 @@
 
 namespace meshlode::scene {
 
+struct PolygonTriangles;
+
 class FaceTriangles {
  public:
   /// Of all triangles that one corner has with the sides.
@@ -30,6 +32,14 @@ class FaceTriangles {
  private:
   bool append_triangulated(std::span<const std::uint32_t> polygon, const Vec3d& area,
                            std::vector<std::uint32_t>& indices);
+  /// Of a face that is not flat, sides that lie on one another as seen from its front can be apart: where triangles of
+  /// that view have not all of its border, adds those of the corners that they left out. False where some is missing
+  /// even so. Bridges and what goes round twice have more border than triangles, and stay. \param area twice the
+  /// polygon's area vector
+  [[nodiscard]] bool add_spikes(std::span<const std::uint32_t> polygon, const Vec3d& area,
+                                PolygonTriangles& made) const;
+  /// The corners without those at a place where the polygon was before.
+  [[nodiscard]] std::vector<std::uint32_t> first_visits(std::span<const std::uint32_t> polygon) const;
   /// Where sides cross: without the corners at places where it was before, as of a face that goes round twice.
   bool append_first_visits(std::span<const std::uint32_t> polygon, std::vector<std::uint32_t>& indices);
   static void append_fan(std::span<const std::uint32_t> polygon, const Fan& fan, std::vector<std::uint32_t>& indices);

@@ -11,15 +11,16 @@ namespace meshlode::scene {
 
 namespace {
 
-/// An index of OBJ (1 is the first, -1 the last so far), as an absolute one; nothing where it is out of range.
+/// An index of OBJ (1 is the first, -1 the last so far), as an absolute one: 0 where it is out of range, nothing where
+/// it is no number.
 std::optional<std::uint64_t> resolve(std::string_view word, std::uint64_t count) {
   const auto index = parse_integer(word);
-  if (!index || *index == 0) return std::nullopt;
+  if (!index) return std::nullopt;
   if (*index > 0) {
     const auto positive = static_cast<std::uint64_t>(*index);
-    return positive <= count ? std::optional(positive) : std::nullopt;
+    return positive <= count ? positive : 0;
   }
-  if (*index < -static_cast<std::int64_t>(count)) return std::nullopt;
+  if (*index == 0 || *index < -static_cast<std::int64_t>(count)) return 0;
   return count - static_cast<std::uint64_t>(-(*index + 1));
 }
 
@@ -42,12 +43,12 @@ ObjFace parse_obj_face(std::string_view line, const ObjCounts& counts) {
     ++face.stated;
     const auto [position_word, uv_word, normal_word] = split(word);
     const auto position = resolve(position_word, counts.positions);
-    const auto uv = uv_word.empty() ? std::optional<std::uint64_t>(0) : resolve(uv_word, counts.uvs);
-    const auto normal = normal_word.empty() ? std::optional<std::uint64_t>(0) : resolve(normal_word, counts.normals);
-    face.is_valid = face.is_valid && position;
-    face.lacks_uvs = face.lacks_uvs || !uv;
-    face.lacks_normals = face.lacks_normals || !normal;
+    const auto uv = uv_word.empty() ? 0 : resolve(uv_word, counts.uvs);
+    const auto normal = normal_word.empty() ? 0 : resolve(normal_word, counts.normals);
     const ObjCorner corner{position.value_or(0), uv.value_or(0), normal.value_or(0)};
+    face.is_valid = face.is_valid && corner.position != 0 && uv && normal;
+    face.lacks_uvs = face.lacks_uvs || (corner.uv == 0 && !uv_word.empty());
+    face.lacks_normals = face.lacks_normals || (corner.normal == 0 && !normal_word.empty());
     if (face.corners.empty() || face.corners.back().position != corner.position) face.corners.push_back(corner);
   }
   while (face.corners.size() > 1 && face.corners.back().position == face.corners.front().position) {

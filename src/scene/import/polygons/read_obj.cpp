@@ -190,9 +190,8 @@ Status ObjReader::read_normal(std::string_view line) {
 
 Status ObjReader::read_face(std::string_view line) {
   const ObjFace face = parse_obj_face(line, {positions_.size(), uvs_.size(), normals_.size()});
-  const bool lacks_attribute = face.lacks_uvs || face.lacks_normals;
-  if ((!face.is_valid || lacks_attribute) && !options_.repair) {
-    return invalid(line_, "a face corner that is not an index, or out of range");
+  if (!face.is_valid && !options_.repair) {
+    return invalid(line_, "a face corner that is not an index, or a position out of range; --repair drops the face");
   }
   const std::uint64_t stated = face.stated > 2 ? face.stated - 2 : 0;
   if (!face.is_valid) {
