@@ -20,6 +20,8 @@
 
 namespace meshlode::builder {
 
+struct LinearBounds;
+
 class BoundedSearch {
  public:
   /// A point that was farther.
@@ -97,9 +99,11 @@ class BoundedSearch {
   }
   void take(const Found& found);
   void take_least();
-  /// A part of the surface that is known to less than the bound may be nearest to some point of it. If it is too small
-  /// to be divided for that, its bound is what is found of those.
-  [[nodiscard]] bool is_any_in_reach(const Part& part);
+  /// A triangle of the surface may be nearest to a point of the part that is farther than what is known of the
+  /// triangle. \pre limits_
+  [[nodiscard]] bool may_be_beyond(std::uint32_t triangle, const Part& part, const LinearBounds& bounds) const;
+  /// One in reach may be. If the part is too small to be divided for that, its bound is what is found of those.
+  [[nodiscard]] bool is_any_in_reach(const Part& part, const LinearBounds& bounds);
   /// A triangle around `place` is, to all three and so to all between them.
   [[nodiscard]] bool is_near_throughout(const std::array<Vec3d, 3>& corners, TreeSlot place) const;
   [[nodiscard]] SurfaceTree::Hit find_near(const Corner& corner, float enough) const;

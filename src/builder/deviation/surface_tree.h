@@ -59,10 +59,11 @@ class SurfaceTree {
   [[nodiscard]] const std::array<std::uint32_t, 3>& indices_at(TreeSlot slot) const {
     return surface_.triangles[triangle_at(slot)];
   }
-  [[nodiscard]] TriangleCorners corners_at(TreeSlot slot) const {
-    const auto& t = indices_at(slot);
+  [[nodiscard]] TriangleCorners corners_of(std::uint32_t triangle) const {
+    const auto& t = surface_.triangles[triangle];
     return {surface_.positions[t[0]], surface_.positions[t[1]], surface_.positions[t[2]]};
   }
+  [[nodiscard]] TriangleCorners corners_at(TreeSlot slot) const { return corners_of(triangle_at(slot)); }
   [[nodiscard]] double distance2_at(const Vec3d& point, TreeSlot slot) const {
     return point_triangle_distance2(point, corners_at(slot));
   }
