@@ -100,7 +100,7 @@ class BoundedSearch {
   void take(const Found& found);
   void take_least();
   /// A triangle of the surface may be nearest to a point of the part that is farther than what is known of the
-  /// triangle. \pre limits_
+  /// triangle. \pre limits_ is not empty
   [[nodiscard]] bool may_be_beyond(std::uint32_t triangle, const Part& part, const LinearBounds& bounds) const;
   /// One in reach may be. If the part is too small to be divided for that, its bound is what is found of those.
   [[nodiscard]] bool is_any_in_reach(const Part& part, const LinearBounds& bounds);

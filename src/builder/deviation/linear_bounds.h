@@ -18,7 +18,7 @@ namespace meshlode::builder {
 /// Triangles of the surface that bound a part.
 constexpr std::size_t kMostBounds = 5;
 
-/// Of a point of the part, each corner's.
+/// Barycentric weights of a point of the part.
 using CornerShares = std::array<double, 3>;
 
 /// Linear functions in a triangle, by their values at its corners: each the distance to a triangle, or more.
@@ -139,8 +139,8 @@ class PieceOfPart {
 };
 
 /// How far a point of the part can be from the surface if this triangle is nearest to it, or no farther by `tie`; 0:
-/// there is none. The distance to a triangle is no less than that to a plane before it, which is linear: between the
-/// two kinds of functions lies all that may be nearer to it than to the triangles that bound the part.
+/// there is none. The distance to the triangle is at least that to a plane in front of it, which is linear. Where this
+/// is more than a bound, the triangle is not nearest.
 [[nodiscard]] inline double most_where_nearest(const TriangleCorners& triangle, const std::array<Vec3d, 3>& part,
                                                const LinearBounds& bounds, double tie) {
   const Vec3d middle = (part[0] + part[1] + part[2]) / 3.0;

@@ -70,7 +70,7 @@ TEST(ImportRefuses, StructuralFaultsByTheirJsonPath) {
       {gltf("\"nodes\":[{\"matrix\":[1,2,3]}]"), "/nodes/0/matrix"},
       {gltf("\"nodes\":[{\"rotation\":[0,0,0,0]}]"), "/nodes/0/rotation"},
       {gltf("\"nodes\":[{\"extensions\":{\"KHR_lights_punctual\":{\"light\":0}}}]"), "/nodes/0/extensions"},
-      {gltf("\"nodes\":[{\"children\":[1]},{}],\"scenes\":[{\"nodes\":[0,1]}]"), "/scenes"},
+      {gltf("\"nodes\":[{\"children\":[1]},{}],\"scenes\":[{\"nodes\":[0,1]}]"), "/scenes/0/nodes/1"},
       {gltf("\"nodes\":[{}],\"scenes\":[{\"nodes\":[0,0]}]"), "/scenes/0/nodes/1"},
       {gltf("\"scene\":0"), "/scene"},
       {gltf("\"materials\":[{\"normalTexture\":{\"index\":0}}]"), "/materials/0/normalTexture/index"},

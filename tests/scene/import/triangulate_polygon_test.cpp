@@ -166,6 +166,23 @@ TEST(FaceTriangles, CornersThatTheFrontDoesNotShowAreKept) {
   const Made two = triangulate_face({{-5, 0, 5}, {5, 0, 5}, {5, 0, -5}, {-5, 1, -5}, {-4, 2, -5}, {0, 5, -5}});
   EXPECT_EQ(two.indices.size(), 12U);
   EXPECT_EQ(two.area, two.of_border);
+  // Opposite walls, whose areas cancel; the bent one with a corner that is there twice; and with a hole, cut open.
+  const Made walls = triangulate_face({{5, 0, -5}, {-5, 0, -5}, {0, 5, -5}, {-5, 0, 5}, {5, 0, 5}, {0, 5, 5}});
+  EXPECT_TRUE(walls.is_said || walls.indices.size() == 12U) << walls.indices.size();
+  const Made twice = triangulate_face({{-5, 0, 5}, {5, 0, 5}, {5, 0, -5}, {-5, 0, -5}, {0, 5, -5}, {0, 5, -5}});
+  EXPECT_EQ(twice.indices.size(), 9U);
+  EXPECT_EQ(twice.area, twice.of_border);
+  const Made holed = triangulate_face({{-5, 0, 5},
+                                       {2, 0, 2},
+                                       {1, 0, 1},
+                                       {2, 0, 1},
+                                       {2, 0, 2},
+                                       {-5, 0, 5},
+                                       {5, 0, 5},
+                                       {5, 0, -5},
+                                       {-5, 0, -5},
+                                       {0, 5, -5}});
+  EXPECT_EQ(holed.area, holed.of_border);
   const Made flat = triangulate_face({{-5, 0, 5}, {5, 0, 5}, {5, 0, -5}, {-5, 0, -5}, {0, 0, -5}});
   EXPECT_EQ(flat.indices.size(), 6U);
   EXPECT_EQ(flat.area, flat.of_border);

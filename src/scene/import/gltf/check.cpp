@@ -158,6 +158,10 @@ class GltfChecker : public JsonChecker {
           !required_index(samplers[i], here, "output", accessor_count)) {
         return false;
       }
+      const Json* interpolation = samplers[i].find("interpolation");
+      if (interpolation != nullptr && !interpolation->is_string() && interpolation->index() != 0) {
+        return fail(here + "/interpolation", "not a string");
+      }
     }
     const auto& channels = animation.items("channels");
     for (std::size_t i = 0; i < channels.size(); ++i) {

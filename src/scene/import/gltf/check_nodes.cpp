@@ -131,14 +131,19 @@ class NodeChecker : public JsonChecker {
   /// Of two nodes of which one is below the other scenes list one at most: else it is shown twice, or in two places.
   bool check_ancestors(const std::vector<bool>& is_listed) {
     std::vector<bool> is_free(is_listed.size(), false);  // neither it nor what is above it is listed
-    for (std::size_t node = 0; node < is_listed.size(); ++node) {
-      if (!is_listed[node]) continue;
-      for (std::uint32_t up = parent_[node]; up != kNoId && !is_free[up]; up = parent_[up]) {
-        if (is_listed[up]) {
-          return fail("/scenes",
-                      "node " + std::to_string(node) + " is listed, and node " + std::to_string(up) + " above it too");
+    const auto& scenes = root_.items("scenes");
+    for (std::size_t s = 0; s < scenes.size(); ++s) {
+      const auto& listed = scenes[s].items("nodes");
+      for (std::size_t i = 0; i < listed.size(); ++i) {
+        const std::uint64_t node = listed[i].index().value_or(0);
+        for (std::uint32_t up = parent_[node]; up != kNoId && !is_free[up]; up = parent_[up]) {
+          if (is_listed[up]) {
+            return fail(
+                "/scenes/" + std::to_string(s) + "/nodes/" + std::to_string(i),
+                "a scene lists node " + std::to_string(up) + " too, which is above node " + std::to_string(node));
+          }
+          is_free[up] = true;
         }
-        is_free[up] = true;
       }
     }
     return true;

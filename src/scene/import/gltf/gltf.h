@@ -122,7 +122,7 @@ struct GltfAsset {
 [[nodiscard]] Status check_gltf_lost_geometry(const Json& root, const std::string& file);
 
 /// What common writers get wrong and every viewer shows, put right in a checked tree and named: a node that a scene
-/// lists below others that no scene shows becomes a root; an interpolation that is not a string counts as missing.
+/// lists below others that no scene shows becomes a root; an interpolation of 0 is taken out.
 void mend_gltf(Json& root, std::vector<LeftOut>& left_out);
 
 /// tinygltf's model of a checked tree; nothing that it would open is handed to it. What it has no number for is -1.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Faults of common writers that say nothing about the scene. UniGLTF puts its objects below a "tmpParent" and lists the
-// objects as the scene; Babylon's exporter for Maya writes interpolations as numbers.
+// Faults of common writers after which a scene can still be told. UniGLTF puts its objects below a "tmpParent" and
+// lists the objects as the scene; Babylon's exporter for Maya writes 0 for the interpolation LINEAR.
 #include "base/ids.h"
 #include "scene/import/gltf/gltf.h"
 
@@ -30,7 +30,7 @@ std::size_t cut_parents(Json& root) {
   return cut;
 }
 
-std::size_t drop_odd_interpolations(Json& root) {
+std::size_t drop_zero_interpolations(Json& root) {
   Json* animations = root.find("animations");
   if (animations == nullptr) return 0;
   std::size_t dropped = 0;
@@ -54,9 +54,9 @@ void mend_gltf(Json& root, std::vector<LeftOut>& left_out) {
     left_out.push_back({"parents of nodes that a scene lists (" + std::to_string(cut) + ")",
                         "a scene shows what it lists, without what is above it"});
   }
-  if (const std::size_t dropped = drop_odd_interpolations(root); dropped != 0) {
+  if (const std::size_t dropped = drop_zero_interpolations(root); dropped != 0) {
     left_out.push_back({"interpolations of animation samplers (" + std::to_string(dropped) + ")",
-                        "what is not a string counts as linear"});
+                        "0 is not one of glTF, and counts as LINEAR"});
   }
 }
 

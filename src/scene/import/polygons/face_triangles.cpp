@@ -94,53 +94,66 @@ bool FaceTriangles::append_triangulated(std::span<const std::uint32_t> polygon, 
   points.reserve(n);
   for (const std::uint32_t v : polygon) points.push_back({positions_[v][axes[0]], positions_[v][axes[1]]});
   PolygonTriangles made = triangulate_polygon(points);
-  if (made.triangles.empty() || !made.is_simple || !add_spikes(polygon, area, made)) ++crossing_;
-  if (made.triangles.empty()) return append_first_visits(polygon, indices);
+  if (made.triangles.empty()) {
+    ++crossing_;
+    return append_first_visits(polygon, indices);
+  }
+  crossing_ += made.is_simple ? 0 : 1;
+  if (made.is_simple && !add_spikes(polygon, area, made)) ++bent_;
   for (const auto& [a, b, c] : made.triangles) indices.insert(indices.end(), {polygon[a], polygon[b], polygon[c]});
   return true;
 }
 
 bool FaceTriangles::add_spikes(std::span<const std::uint32_t> polygon, const Vec3d& area,
                                PolygonTriangles& made) const {
-  constexpr double kRounding = 1e-9;  // of areas, far above what their sums lose and below what can be seen
-  Vec3d missing = area;
-  double size = 0.0;
-  std::vector<bool> is_used(polygon.size(), false);
-  const auto take = [&](const std::array<std::uint32_t, 3>& t) {
-    const Vec3d of_one = area_vector(positions_, std::array{polygon[t[0]], polygon[t[1]], polygon[t[2]]});
-    missing -= of_one;
-    size += glm::length(of_one);
-    for (const std::uint32_t corner : t) is_used[corner] = true;
-  };
-  for (const auto& t : made.triangles) take(t);
-  if (glm::length(missing) <= kRounding * size || first_visits(polygon).size() < polygon.size()) return true;
+  constexpr double kRounding = 1e-11;  // of the areas that are added up, for up to kMaxTriangulatedCorners of them
   const auto n = static_cast<std::uint32_t>(polygon.size());
-  const auto begin = static_cast<std::uint32_t>(std::find(is_used.begin(), is_used.end(), true) - is_used.begin());
-  const std::size_t made_count = made.triangles.size();
-  std::uint32_t last_used = begin;
-  for (std::uint32_t step = 1; step <= n; ++step) {
-    const std::uint32_t corner = (begin + step) % n, before = (begin + step - 1) % n;
-    if (before != last_used) made.triangles.push_back({last_used, before, corner});
-    if (is_used[corner]) last_used = corner;
+  std::set<std::array<double, 3>> places, used;
+  const auto place = [&](std::uint32_t corner) {
+    const Vec3d& p = positions_[polygon[corner]];
+    return std::array{p.x, p.y, p.z};
+  };
+  const auto area_of = [&](const std::array<std::uint32_t, 3>& t) {
+    return area_vector(positions_, std::array{polygon[t[0]], polygon[t[1]], polygon[t[2]]});
+  };
+  double added = 0.0;
+  for (std::uint32_t i = 0; i < n; ++i) {
+    places.insert(place(i));
+    if (i > 0 && i + 1 < n) added += glm::length(area_of({0, i, i + 1}));
   }
-  for (std::size_t i = made_count; i < made.triangles.size(); ++i) take(made.triangles[i]);
-  if (glm::length(missing) <= kRounding * size) return true;
-  made.triangles.resize(made_count);
-  return false;
+  for (const auto& t : made.triangles) {
+    for (const std::uint32_t corner : t) used.insert(place(corner));
+  }
+  if (used.size() < places.size()) {
+    const std::uint32_t begin = made.triangles[0][0];
+    std::uint32_t last_used = begin;
+    std::vector<std::array<std::uint32_t, 3>> spike;  // of the corners since that one
+    double size = 0.0;
+    for (std::uint32_t step = 1; step <= n; ++step) {
+      const std::uint32_t corner = (begin + step) % n, before = (begin + step - 1) % n;
+      if (before != last_used && place(before) != place(corner)) {
+        spike.push_back({last_used, before, corner});
+        size += glm::length(area_of(spike.back()));
+      }
+      if (!used.contains(place(corner))) continue;
+      if (size > kRounding * added) made.triangles.insert(made.triangles.end(), spike.begin(), spike.end());
+      last_used = corner;
+      spike.clear();
+      size = 0.0;
+    }
+  }
+  Vec3d missing = area;
+  for (const auto& t : made.triangles) missing -= area_of(t);
+  return glm::length(missing) <= kRounding * added || places.size() < n;
 }
 
-std::vector<std::uint32_t> FaceTriangles::first_visits(std::span<const std::uint32_t> polygon) const {
+bool FaceTriangles::append_first_visits(std::span<const std::uint32_t> polygon, std::vector<std::uint32_t>& indices) {
   std::vector<std::uint32_t> once;
   std::set<std::array<double, 3>> places;
   for (const std::uint32_t v : polygon) {
     const Vec3d& p = positions_[v];
     if (places.insert({p.x, p.y, p.z}).second) once.push_back(v);
   }
-  return once;
-}
-
-bool FaceTriangles::append_first_visits(std::span<const std::uint32_t> polygon, std::vector<std::uint32_t>& indices) {
-  const std::vector<std::uint32_t> once = first_visits(polygon);
   if (once.size() < 3 || once.size() == polygon.size()) return false;
   append_fan(once, find_fan(positions_, once, area_vector(positions_, once)), indices);
   return true;
@@ -170,6 +183,10 @@ void FaceTriangles::report(std::vector<LeftOut>& left_out) const {
   if (crossing_ != 0) {
     left_out.push_back({"the shape of " + counted(crossing_, "face"),
                         "their sides cross or touch each other, so that what is inside is a guess"});
+  }
+  if (bent_ != 0) {
+    left_out.push_back({"the shape of " + counted(bent_, "bent face"),
+                        "their triangles do not have all of their border, so that some of the surface is missing"});
   }
   if (too_large_ != 0) {
     left_out.push_back({"the shape of " + counted(too_large_, "dented face"),

@@ -46,7 +46,8 @@ ObjFace parse_obj_face(std::string_view line, const ObjCounts& counts) {
     const auto uv = uv_word.empty() ? 0 : resolve(uv_word, counts.uvs);
     const auto normal = normal_word.empty() ? 0 : resolve(normal_word, counts.normals);
     const ObjCorner corner{position.value_or(0), uv.value_or(0), normal.value_or(0)};
-    face.is_valid = face.is_valid && corner.position != 0 && uv && normal;
+    face.is_valid = face.is_valid && corner.position != 0;
+    face.is_malformed = face.is_malformed || !uv || !normal;
     face.lacks_uvs = face.lacks_uvs || (corner.uv == 0 && !uv_word.empty());
     face.lacks_normals = face.lacks_normals || (corner.normal == 0 && !normal_word.empty());
     if (face.corners.empty() || face.corners.back().position != corner.position) face.corners.push_back(corner);

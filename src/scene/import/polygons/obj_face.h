@@ -22,7 +22,8 @@ struct ObjCounts {
 struct ObjFace {
   std::vector<ObjCorner> corners;                 ///< without those that repeat the one before
   std::uint64_t stated = 0;                       ///< how many the line has
-  bool is_valid = true;                           ///< all are numbers, and every position is there
+  bool is_valid = true;                           ///< every position is there
+  bool is_malformed = false;                      ///< some texture coordinate or normal is no number
   bool lacks_uvs = false, lacks_normals = false;  ///< some corner names one that is not there
 };
 

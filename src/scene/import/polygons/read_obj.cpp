@@ -190,7 +190,7 @@ Status ObjReader::read_normal(std::string_view line) {
 
 Status ObjReader::read_face(std::string_view line) {
   const ObjFace face = parse_obj_face(line, {positions_.size(), uvs_.size(), normals_.size()});
-  if (!face.is_valid && !options_.repair) {
+  if ((!face.is_valid || face.is_malformed) && !options_.repair) {
     return invalid(line_, "a face corner that is not an index, or a position out of range; --repair drops the face");
   }
   const std::uint64_t stated = face.stated > 2 ? face.stated - 2 : 0;
@@ -248,9 +248,9 @@ void ObjReader::report() {
     if (count != 0) leave_out(what, counted(count, noun, *noun == 'v' ? "vertices" : "") + ": " + why);
   };
   say(partial_uvs_, "face", "texture coordinates", "only some corners have them");
-  say(dangling_uvs_, "face", "texture coordinates", "they name one that is not there");
+  say(dangling_uvs_, "face", "texture coordinates", "they name one that no line before them has");
   say(partial_normals_, "face", "normals", "only some corners have them");
-  say(dangling_normals_, "face", "normals", "they name one that is not there");
+  say(dangling_normals_, "face", "normals", "they name one that no line before them has");
   say(partial_colors_, "face", "colours", "only some corners have them");
   say(clamped_, "vertex", "colours", "a level outside 0 … 1, which is clamped");
   say(weights_, "vertex", "the fourth number of v", "a weight for curves");
