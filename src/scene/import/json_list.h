@@ -52,10 +52,8 @@ class JsonList {
     block->size = static_cast<std::uint32_t>(size());
     block->capacity = static_cast<std::uint32_t>(count);
     T* to = reinterpret_cast<T*>(block + 1);
-    for (T& item : *this) {
-      new (to++) T(std::move(item));
-      item.~T();
-    }
+    for (T& item : *this) new (to++) T(std::move(item));
+    for (T& item : *this) item.~T();
     ::operator delete(block_);
     block_ = block;
   }

@@ -121,13 +121,14 @@ TEST(BoundedSearch, DividesAlongTheEdgesOfWhatCoversItTogether) {
 TEST(BoundedSearch, LosesNoPointOfAPartThatIsKnownToLess) {
   Random random(91);
   constexpr std::size_t kParts = 3;
-  for (int round = 0; round < 60; ++round) {
-    const judge::Surface surface = test::random_soup(random, 30, 2.0, 0.6);
+  for (int round = 0; round < 90; ++round) {
+    const bool is_lattice = round % 3 == 0;  // where many triangles are equally near
+    const judge::Surface surface = is_lattice ? lattice(random, 30, 4) : test::random_soup(random, 30, 2.0, 0.6);
     const SurfaceTree tree = tree_over(surface);
     const auto part_of = [](std::uint32_t triangle) -> std::size_t { return triangle % kParts; };
     const std::array<double, kParts + 1> known{0.05, 0.2, 0.6, 10.0};  // the last: of none of the others
     BoundedSearch search(tree, 1.0, known, part_of);
-    const judge::Surface one = test::random_soup(random, 1, 0.1, 2.0);
+    const judge::Surface one = is_lattice ? lattice(random, 1, 4) : test::random_soup(random, 1, 0.1, 2.0);
     const Corners corners{one.positions[0], one.positions[1], one.positions[2]};
     search.add(corners, TreeSlot());
     search.run(kWithoutEnd);

@@ -109,9 +109,8 @@ TEST_F(ObjAsWritten, AttributesThatAreNotThereCostNoFaceAndPositionsCostOneUnder
   EXPECT_EQ(scene->triangles_in_file, 3U);
   EXPECT_EQ(scene->meshes[0].drops.repaired, 1U);
   EXPECT_EQ(all_left_out(*scene),
-            "texture coordinates: 1 face: they name one that no line before them has; normals: 1 face: they name one "
-            "that no line "
-            "before them has; ");
+            "texture coordinates: 1 face: they name one that no line before them has; "
+            "normals: 1 face: they name one that no line before them has; ");
   ASSERT_EQ(scene->meshes[0].primitives.size(), 2U);
   EXPECT_TRUE(scene->meshes[0].primitives[0].uvs[0].empty());
   EXPECT_FALSE(scene->meshes[0].primitives[0].normals.empty());

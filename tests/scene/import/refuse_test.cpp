@@ -79,6 +79,9 @@ TEST(ImportRefuses, StructuralFaultsByTheirJsonPath) {
       {gltf("\"images\":[{\"uri\":7}]"), "/images/0/uri"},
       {gltf("\"animations\":[{\"samplers\":[],\"channels\":[{\"sampler\":0,\"target\":{\"path\":\"scale\"}}]}]"),
        "/animations/0/channels/0/sampler"},
+      {gltf("\"animations\":[{\"samplers\":[{\"input\":0,\"output\":0,\"interpolation\":1}]}],"
+            "\"accessors\":[{\"count\":1,\"type\":\"SCALAR\",\"componentType\":5126}]"),
+       "/animations/0/samplers/0/interpolation"},
       {gltf("\"buffers\":[{\"byteLength\":4,\"uri\":\"data:;base64,AAA=\"}]"), "/buffers/0"},
       {gltf("\"buffers\":[{\"byteLength\":4,\"uri\":\"data:;base64,A*A=\"}]"), "/buffers/0/uri"},
       {gltf("\"buffers\":[{\"byteLength\":4,\"uri\":\"missing.bin\"}]"), "/buffers/0/uri", ErrorCode::kIo},

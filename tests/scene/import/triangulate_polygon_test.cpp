@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <map>
 #include <random>
 #include <set>
 
@@ -155,6 +156,45 @@ Made triangulate_face(const std::vector<Vec3d>& positions) {
   return out;
 }
 
+using Edge = std::array<std::uint32_t, 2>;
+
+/// Sides of the polygon that no triangle has, and edges of triangles that are neither sides nor another triangle's.
+std::vector<Edge> unmatched_edges(const std::vector<std::uint32_t>& indices, std::size_t sides) {
+  std::map<Edge, int> balance;
+  const auto add = [&](std::uint32_t a, std::uint32_t b, int count) {
+    balance[{std::min(a, b), std::max(a, b)}] += a < b ? count : -count;
+  };
+  for (std::size_t i = 0; i < indices.size(); ++i) add(indices[i], indices[i / 3 * 3 + (i + 1) % 3], 1);
+  const auto n = static_cast<std::uint32_t>(sides);
+  for (std::uint32_t i = 0; i < n; ++i) add(i, (i + 1) % n, -1);
+  std::vector<Edge> edges;
+  for (const auto& [edge, count] : balance) {
+    if (count != 0) edges.push_back(edge);
+  }
+  return edges;
+}
+
+/// Edges that hang together lie on one line: what is missing between them has no area.
+bool is_flat(const std::vector<Vec3d>& positions, std::vector<Edge> edges) {
+  while (!edges.empty()) {
+    std::set<std::uint32_t> corners(edges.back().begin(), edges.back().end());
+    const Vec3d& from = positions[edges.back()[0]];
+    const Vec3d along = positions[edges.back()[1]] - from;
+    for (std::size_t before = 0; before != edges.size();) {
+      before = edges.size();
+      std::erase_if(edges, [&](const Edge& e) {
+        const bool hangs = corners.contains(e[0]) || corners.contains(e[1]);
+        if (hangs) corners.insert(e.begin(), e.end());
+        return hangs;
+      });
+    }
+    for (const std::uint32_t c : corners) {
+      if (glm::cross(along, positions[c] - from) != Vec3d(0.0)) return false;
+    }
+  }
+  return true;
+}
+
 /// Sides that lie on one another from the front of a face that is not flat: trimesh's polygonfaces.obj.
 TEST(FaceTriangles, CornersThatTheFrontDoesNotShowAreKept) {
   const std::vector<Vec3d> bent{{-5, 0, 5}, {5, 0, 5}, {5, 0, -5}, {-5, 0, -5}, {0, 5, -5}};
@@ -168,7 +208,8 @@ TEST(FaceTriangles, CornersThatTheFrontDoesNotShowAreKept) {
   EXPECT_EQ(two.area, two.of_border);
   // Opposite walls, whose areas cancel; the bent one with a corner that is there twice; and with a hole, cut open.
   const Made walls = triangulate_face({{5, 0, -5}, {-5, 0, -5}, {0, 5, -5}, {-5, 0, 5}, {5, 0, 5}, {0, 5, 5}});
-  EXPECT_TRUE(walls.is_said || walls.indices.size() == 12U) << walls.indices.size();
+  EXPECT_EQ(walls.indices.size(), 12U);
+  EXPECT_FALSE(walls.is_said);
   const Made twice = triangulate_face({{-5, 0, 5}, {5, 0, 5}, {5, 0, -5}, {-5, 0, -5}, {0, 5, -5}, {0, 5, -5}});
   EXPECT_EQ(twice.indices.size(), 9U);
   EXPECT_EQ(twice.area, twice.of_border);
@@ -191,7 +232,7 @@ TEST(FaceTriangles, CornersThatTheFrontDoesNotShowAreKept) {
 /// Corners of a coarse grid, so that sides meet, fold and lie on one another in every way.
 TEST(FaceTriangles, WhatIsMissingOfABentFaceIsSaid) {
   std::mt19937 random(1);
-  int whole = 0;
+  int whole = 0, odd = 0;
   for (int trial = 0; trial < 20000; ++trial) {
     std::vector<Vec3d> positions(5 + random() % 4);
     for (Vec3d& p : positions) p = {random() % 4, random() % 4, random() % 4};
@@ -203,8 +244,10 @@ TEST(FaceTriangles, WhatIsMissingOfABentFaceIsSaid) {
     const Made made = triangulate_face(positions);
     whole += made.is_said ? 0 : 1;
     EXPECT_TRUE(made.is_said || glm::length(made.area - made.of_border) < 1e-9) << trial;
+    if (!made.is_said && !is_flat(positions, unmatched_edges(made.indices, positions.size()))) ++odd;
   }
   EXPECT_GT(whole, 2000);
+  EXPECT_LE(odd, 6);  // spikes that share a corner; sides that cross, seen edge-on
 }
 
 /// Large faces of an odd shape: the work of one, and of all together, is bounded.

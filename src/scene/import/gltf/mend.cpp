@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Faults of common writers after which a scene can still be told. UniGLTF puts its objects below a "tmpParent" and
-// lists the objects as the scene; Babylon's exporter for Maya writes 0 for the interpolation LINEAR.
+// Faults of common writers that leave no doubt about what a scene shows. UniGLTF puts its objects below a "tmpParent"
+// and lists the objects as the scene; Babylon's exporter for Maya writes 0 for the interpolation LINEAR.
 #include "base/ids.h"
 #include "scene/import/gltf/gltf.h"
 

@@ -190,8 +190,11 @@ Status ObjReader::read_normal(std::string_view line) {
 
 Status ObjReader::read_face(std::string_view line) {
   const ObjFace face = parse_obj_face(line, {positions_.size(), uvs_.size(), normals_.size()});
-  if ((!face.is_valid || face.is_malformed) && !options_.repair) {
-    return invalid(line_, "a face corner that is not an index, or a position out of range; --repair drops the face");
+  if (!face.is_valid && !options_.repair) {
+    return invalid(line_, "a corner's position is not an index, or out of range; --repair drops the face");
+  }
+  if (face.is_malformed && !options_.repair) {
+    return invalid(line_, "a corner's texture coordinate or normal is not an index; --repair drops it from the face");
   }
   const std::uint64_t stated = face.stated > 2 ? face.stated - 2 : 0;
   if (!face.is_valid) {
