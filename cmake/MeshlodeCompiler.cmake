@@ -41,4 +41,5 @@ if(MESHLODE_SANITIZE)
   # eight (vptr). The two are a tenth of what compiling with sanitizers costs.
   add_compile_options(-fsanitize=${MESHLODE_SANITIZE} -fno-sanitize=object-size,vptr -fno-omit-frame-pointer -fno-sanitize-recover=all)
   add_link_options(-fsanitize=${MESHLODE_SANITIZE})
+  add_compile_definitions(MESHLODE_SANITIZED)
 endif()

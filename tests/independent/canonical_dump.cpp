@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// canonical_dump FILE: every integer of an asset as the program's own reader and decoder see it, floats as their bits:
-// the text that lode.py prints too. Field by field, in the order of docs/reference/format.md, so that neither layout
-// nor decoding is taken from the other side.
+// canonical_dump FILE | -: every integer of an asset as the program's own reader and decoder see it, floats as their
+// bits: the text that lode.py prints too. Field by field, in the order of docs/reference/format.md, so that neither
+// layout nor decoding is taken from the other side. -: of each file named on a line of the input, its text and a line
+// with `=`, its exit code, and what is wrong: to begin a program takes longer than to read a small file.
 #include <bit>
 #include <cstdio>
+#include <iostream>
 #include <string>
+#include <string_view>
 #include <type_traits>
 
+#include "base/try.h"
 #include "run/decode/decode.h"
 #include "run/read/asset.h"
 
@@ -118,12 +122,8 @@ void print_text(const char* name, std::string_view text) {
   print_hex(std::string(name) + ' ', {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
 }
 
-bool print_clusters(const run::Asset& asset) {
-  const auto decoded = run::decode_all(asset);
-  if (!decoded) {
-    std::fprintf(stderr, "%s\n", decoded.error().message().c_str());
-    return false;
-  }
+Status print_clusters(const run::Asset& asset) {
+  TRY_LET(decoded, run::decode_all(asset));
   for (std::size_t c = 0; c < decoded->size(); ++c) {
     const run::DecodedCluster& cluster = (*decoded)[c];
     Line("cluster") << c << cluster.vertex_count << cluster.triangle_count;
@@ -137,18 +137,11 @@ bool print_clusters(const run::Asset& asset) {
       line << cluster.triangle_material[t];
     }
   }
-  return true;
+  return Ok{};
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  if (argc != 2) return 1;
-  const auto asset = run::Asset::open(argv[1]);
-  if (!asset) {
-    std::fprintf(stderr, "%s\n", asset.error().message().c_str());
-    return static_cast<int>(asset.error().code);
-  }
+Status print_file(const std::string& path) {
+  TRY_LET(asset, run::Asset::open(path));
   print_hex("lode " + std::to_string(asset->header().version) + ' ', asset->header().content_hash);
   print_text("META", asset->meta_json());
   print_text("SCNE", asset->scene_json());
@@ -167,5 +160,26 @@ int main(int argc, char** argv) {
   for (std::size_t i = 0; i < asset->page_dependencies().size(); ++i) {
     Line("PDEP") << i << asset->page_dependencies()[i];
   }
-  return print_clusters(*asset) ? 0 : 3;
+  return print_clusters(*asset);
+}
+
+int code_of(const Status& status) {
+  return status ? 0 : static_cast<int>(status.error().code);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc != 2) return 1;
+  if (std::string_view(argv[1]) != "-") {
+    const Status status = print_file(argv[1]);
+    if (!status) std::fprintf(stderr, "%s\n", status.error().message().c_str());
+    return code_of(status);
+  }
+  for (std::string path; std::getline(std::cin, path);) {
+    const Status status = print_file(path);
+    std::printf("= %d %s\n", code_of(status), status ? "" : status.error().message().c_str());
+    std::fflush(stdout);
+  }
+  return 0;
 }

@@ -16,6 +16,7 @@
 #include "base/printable.h"
 #include "base/system.h"
 #include "help_text.h"
+#include "large_arrays.h"
 #include "library_versions.h"
 #include "options.h"
 #include "outputs.h"
@@ -98,17 +99,6 @@ int run(std::span<char* const> args) {
   if (is_help(name)) return print_or_fail(help());
   const Verb* const verb = find_verb(name);
   return verb != nullptr ? run_verb(*verb, args.subspan(1)) : unknown_verb(name);
-}
-
-/// Large arrays go back to the system as soon as they are freed. Left to itself, glibc takes the first one that is
-/// freed as a sign to keep all up to its size for later, in gaps between what is still in use: a sixth of a build's
-/// peak.
-void give_back_large_arrays() {
-#ifdef __GLIBC__
-  constexpr int kLargeArray = 2 << 20, kKeptAtTheEnd = 32 << 20;  // bytes
-  mallopt(M_MMAP_THRESHOLD, kLargeArray);
-  mallopt(M_TRIM_THRESHOLD, kKeptAtTheEnd);
-#endif
 }
 
 /// Each of malloc's arenas, of which every thread wants one, reserves 64 MiB of addresses. Where a limit (ulimit -v)
