@@ -271,7 +271,5 @@ constexpr double kTolerance = 1.002;
 /// With 16, 64 and 256 random scene 940027 takes 9, 20 and 55 s to build for 6.4, and with 1 the dragon has other
 /// errors.
 constexpr std::size_t kPartsPerTriangle = 4;
-/// A source of at most so many triangles costs little, and is looked at without shortcuts.
-constexpr std::size_t kFewSource = 30000;
 
 }  // namespace meshlode::builder

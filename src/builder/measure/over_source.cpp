@@ -13,16 +13,8 @@ namespace meshlode::builder {
 
 namespace {
 
-/// A triangle is looked at closely where one of four points of it is so far, as a share of what is known. Looking at
-/// all of them costs the dragon 2.7 times the time.
-constexpr double kPromise = 0.6;
-/// Or where the source near to one of these points is not parallel to it, within this cosine: between two sheets or two
-/// loose pieces a peak is far from all four, and may be however near they are (random scene 1061895: all four within
-/// 0.1 of what is known, a peak at 1.13). 50,000 large triangles in 20 sheets take 20 to 25 s for 12 with a
-/// share of 0.2 there, the dragon the same.
-constexpr float kBetween = 0.7F;
-/// One that lies over more source triangles is left to a search in bounds, which costs more: with 64 crystal.glb takes
-/// 4.2 s to build for 1.6, fandisk 0.55 for 0.33; the dragon takes a twentieth less.
+/// What is left of a triangle after so many pieces is left to a search in bounds. With 64 and 256 crystal.glb takes 4.2
+/// and 1.0 s to build for 0.7; with 16384 as long.
 constexpr std::size_t kMostPiecesOfMade = 1024;
 
 /// A part of a triangle is divided while it is wider than so many times what is known, and while that is more than this
@@ -86,7 +78,6 @@ void LevelMeter::ask_vertices(Made& made) const {
 void LevelMeter::check_made(const LevelSurface& surface, Made& made) const {
   const SourceTree::Impl& impl = source_.impl();
   const SurfaceTree& source = impl.tree;
-  const bool is_small = source.size() <= kFewSource;
   double within = known(made.group).known;
   const auto raise = [&](double distance) {
     if (distance <= within) return;
@@ -96,27 +87,14 @@ void LevelMeter::check_made(const LevelSurface& surface, Made& made) const {
   BoundedSearch search(source, kTolerance, within);
   std::size_t searched = 0;
   const LinkedSurface linked{impl.positions, impl.triangles, source_neighbor_, source_normal_, source, impl.place};
-  Overlay overlay(linked, kMostPiecesOfMade);
+  Overlay overlay(linked, kMostPiecesOfMade, Overlay::Cuts::kNeeded);
   std::vector<PartOfMade> parts;
   for (std::uint32_t i = 0; i < made.triangle_count; ++i) {
     const std::uint32_t k = made.first_triangle + i;
     if (!made.near[i].is_valid()) continue;
     const std::uint8_t seen = seen_[k].load(std::memory_order_relaxed);
-    if (!is_small && seen == kSeen) continue;
+    if (seen == kSeen) continue;
     const auto [a, b, c] = surface.corners(k);
-    if (!is_small) {
-      double most = 0.0;
-      bool is_between = false;
-      TreeSlot place = made.near[i];
-      for (const Vec3d& x : {(a + b + c) / 3.0, 0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a)}) {
-        place = find_near(source, x, place, kNearPoint * within).slot;
-        most = std::max(most, distance_at(source, x, place));
-        const Vec3f& normal = source_normal_[source.triangle_at(place)];
-        is_between = is_between || glm::dot(normal, surface.normal[k]) < kBetween;
-      }
-      raise(most);
-      if (!is_between && most <= kPromise * within) continue;
-    }
     bool is_searched = false;
     parts.assign(1, {{a, b, c}, made.near[i], 0});
     while (!parts.empty()) {

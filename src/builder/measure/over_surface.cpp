@@ -17,7 +17,7 @@ constexpr double kNearEnough = 0.5;
 constexpr double kFlat = 0.4;
 /// And this cosine from parallel to them.
 constexpr float kFlatCosine = 0.9F;
-/// A source triangle that lies over more of the surface is left to a search in bounds.
+/// What is left of a source triangle after so many pieces is left to a search in bounds.
 constexpr std::size_t kMostPiecesOfUnit = 48;
 /// More than a distance in floats is off by.
 constexpr double kSlack = 1e-6;
@@ -108,9 +108,8 @@ GroupId LevelMeter::owner_of(const SourceUnits::Unit& unit, const SourceUnits::T
 
 void LevelMeter::check_units(const LevelSurface& surface, UnitChunk& chunk) {
   const SourceTree::Impl& source = source_.impl();
-  const bool is_small = source.triangles.size() <= kFewSource;
   const LinkedSurface linked = surface.linked();
-  Overlay overlay(linked, kMostPiecesOfUnit);
+  Overlay overlay(linked, kMostPiecesOfUnit, Overlay::Cuts::kAll);
   BoundedSearch search(surface.tree, kTolerance, known(chunk.group).known);
   std::size_t searched = 0;
   for (std::size_t i = 0; i < chunk.first_near.size(); ++i) {
@@ -123,10 +122,9 @@ void LevelMeter::check_units(const LevelSurface& surface, UnitChunk& chunk) {
       const std::array<std::uint32_t, 3> k{n[0].triangle, n[1].triangle, n[2].triangle};
       const TriangleCorners corners = source.corners(t.id);
       const double within = owners.known();
-      Vec3f normal(0.0F);
       bool is_at_border = false;
-      for (std::size_t j = 0; j < 3 && !is_small; ++j) {
-        if (j == 0) normal = source_normal_.empty() ? unit_normal(corners) : source_normal_[t.id];
+      const Vec3f normal = source_normal_.empty() ? unit_normal(corners) : source_normal_[t.id];
+      for (std::size_t j = 0; j < 3; ++j) {
         const bool is_border = units_.is_border(units_.vertices(unit)[t.corner[j]]);
         mark_seen(surface, k[j], normal, is_border);
         is_at_border = is_at_border || is_border;
@@ -134,7 +132,7 @@ void LevelMeter::check_units(const LevelSurface& surface, UnitChunk& chunk) {
       if (k[0] == k[1] && k[1] == k[2]) continue;
       const float nearest = std::min(n[0].distance, std::min(n[1].distance, n[2].distance));
       if (static_cast<double>(nearest) + (1.0 + kSlack) * longest_edge(corners) <= within) continue;
-      if (!is_small && !is_at_border && is_flat(surface, corners, normal, k, within)) continue;
+      if (!is_at_border && is_flat(surface, corners, normal, k, within)) continue;
       // A distance over one group's part says nothing of what another one's is off by.
       const bool is_within = overlay.is_within(corners, k[0], within, owners.is_one());
       const GroupId owner = owners.is_one() ? GroupId(chunk.group) : owner_of(unit, t);
@@ -143,7 +141,7 @@ void LevelMeter::check_units(const LevelSurface& surface, UnitChunk& chunk) {
         chunk.moved.push_back({owner.value, to.value, t.id, true});
       };
       for (const std::uint32_t below : overlay.below()) {
-        if (!is_small) mark_seen(surface, below, normal, is_at_border);
+        mark_seen(surface, below, normal, is_at_border);
         is_near_to(maker(surface, below));
       }
       if (is_within) continue;

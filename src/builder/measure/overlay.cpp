@@ -20,18 +20,20 @@ bool Overlay::is_within(const TriangleCorners& corners, std::uint32_t start, dou
   all.polygon.fill_pair();
   all.triangle = start;
   all.entered = 3;
-  for (std::size_t pieces = 0; size_ > 0; ++pieces) {
-    if (pieces == most_pieces_) {
-      rest_.assign(1, {corners, start, std::numeric_limits<double>::infinity()});
-      break;
-    }
+  for (std::size_t pieces = 0; size_ > 0 && pieces < most_pieces_; ++pieces) {
     const std::size_t top = size_ - 1;
+    if (cuts_ == Cuts::kNeeded && is_surely_near(stack_[top]->polygon, below_of(stack_[top]->triangle))) {
+      --size_;
+      continue;
+    }
     cut(*stack_[top]);
     check(*stack_[top]);
     // What was cut off lies above it.
     std::swap(stack_[top], stack_[size_ - 1]);
     --size_;
   }
+  // Around a corner of the surface a piece may lie beyond the border of each triangle, and go round for ever.
+  while (size_ > 0) check(*stack_[--size_]);
   return far_.empty() && rest_.empty();
 }
 

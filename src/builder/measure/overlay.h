@@ -96,7 +96,12 @@ class Overlay {
     double distance = 0.0;      ///< from the surface, where it is farther than what is known; else 0
   };
 
-  Overlay(const LinkedSurface& surface, std::size_t most_pieces) : surface_(surface), most_pieces_(most_pieces) {}
+  /// Where a triangle is cut: wherever it passes from one triangle of the surface to another, so that below() has all
+  /// that it lies over; or not where the one is near enough to all of it.
+  enum class Cuts : std::uint8_t { kAll, kNeeded };
+  /// After `most_pieces` what is left of a triangle is not cut any more.
+  Overlay(const LinkedSurface& surface, std::size_t most_pieces, Cuts cuts)
+      : surface_(surface), most_pieces_(most_pieces), cuts_(cuts) {}
 
   /// Whether all of a triangle is within `known`. Else far() has corners that are beyond, and rest() what is open.
   /// `start`: a triangle of the surface that is near to the first corner. `is_raised`: by a corner that is beyond
@@ -105,7 +110,7 @@ class Overlay {
                                bool is_raised = true);
 
   [[nodiscard]] std::span<const Far> far() const { return far_; }
-  /// The triangles of the surface that parts of it lie over.
+  /// The triangles of the surface that parts of it lie over; Cuts::kNeeded: some of them.
   [[nodiscard]] std::span<const std::uint32_t> below() const { return below_; }
   struct Rest {
     TriangleCorners corners;
@@ -164,6 +169,7 @@ class Overlay {
 
   const LinkedSurface& surface_;
   std::size_t most_pieces_;
+  Cuts cuts_;
   double known_ = 0.0;
   bool is_raised_ = true;
   std::deque<Piece> pieces_;   ///< as many as there ever were

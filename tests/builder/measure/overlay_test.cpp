@@ -82,7 +82,7 @@ std::uint32_t nearest(const Sheet& sheet, const Vec3d& p) {
 TEST(Overlay, OfAFlatSheetTheHeightIsKnownFromFewCorners) {
   const Sheet sheet = lattice(4, [](const Vec3d&) { return 0.0; });
   const LinkedSurface linked = sheet.linked();
-  Overlay overlay(linked, 48);
+  Overlay overlay(linked, 48, Overlay::Cuts::kAll);
   const TriangleCorners above{Vec3d(0.1, 0.1, 0.01), Vec3d(0.9, 0.2, 0.01), Vec3d(0.4, 0.8, 0.01)};
   EXPECT_TRUE(overlay.is_within(above, nearest(sheet, above[0]), 0.0101));
   EXPECT_GT(overlay.below().size(), 5U);
@@ -95,7 +95,7 @@ TEST(Overlay, APeakBetweenCornersThatAreNearIsFound) {
   // A valley across the middle; the triangle's corners lie on both sides of it.
   const Sheet sheet = lattice(8, [](const Vec3d& p) { return p.x == 0.5 ? -0.1 : 0.0; });
   const LinkedSurface linked = sheet.linked();
-  Overlay overlay(linked, 48);
+  Overlay overlay(linked, 48, Overlay::Cuts::kAll);
   const TriangleCorners t{Vec3d(0.3, 0.4, 0.0), Vec3d(0.7, 0.45, 0.0), Vec3d(0.45, 0.6, 0.0)};
   EXPECT_FALSE(overlay.is_within(t, nearest(sheet, t[0]), 0.01));
   double most = 0.0;
@@ -107,7 +107,7 @@ TEST(Overlay, APeakBetweenCornersThatAreNearIsFound) {
 TEST(Overlay, WhatIsKnownMayStayAsItIs) {
   const Sheet sheet = lattice(8, [](const Vec3d& p) { return p.x == 0.25 ? -0.2 : p.x == 0.75 ? -0.05 : 0.0; });
   const LinkedSurface linked = sheet.linked();
-  Overlay overlay(linked, 96);
+  Overlay overlay(linked, 96, Overlay::Cuts::kAll);
   const TriangleCorners t{Vec3d(0.05, 0.4, 0.0), Vec3d(0.95, 0.45, 0.0), Vec3d(0.5, 0.6, 0.0)};
   for (const bool is_raised : {true, false}) {
     EXPECT_FALSE(overlay.is_within(t, nearest(sheet, t[0]), 0.01, is_raised));
@@ -129,7 +129,7 @@ TEST(Overlay, WhatIsWithinIsAndWhatIsFarIsAsFar) {
     const double rough = 0.3 * unit() * unit();
     const Sheet sheet = lattice(6, [&](const Vec3d&) { return rough * unit(); });
     const LinkedSurface linked = sheet.linked();
-    Overlay overlay(linked, 48);
+    Overlay overlay(linked, 48, round % 2 == 0 ? Overlay::Cuts::kAll : Overlay::Cuts::kNeeded);
     for (int i = 0; i < 10; ++i) {
       const Vec3d at(unit(), unit(), 0.1 * unit());
       TriangleCorners t;
@@ -152,6 +152,51 @@ TEST(Overlay, WhatIsWithinIsAndWhatIsFarIsAsFar) {
   EXPECT_GT(far, 50);
 }
 
+TEST(Overlay, NothingIsCutWhereItIsNearEnough) {
+  const Sheet sheet = lattice(8, [](const Vec3d&) { return 0.0; });
+  const LinkedSurface linked = sheet.linked();
+  const TriangleCorners above{Vec3d(0.1, 0.1, 0.01), Vec3d(0.9, 0.2, 0.01), Vec3d(0.4, 0.8, 0.01)};
+  Overlay overlay(linked, 96, Overlay::Cuts::kNeeded);
+  EXPECT_TRUE(overlay.is_within(above, nearest(sheet, above[0]), 5.0));
+  EXPECT_TRUE(overlay.below().empty());
+  EXPECT_TRUE(overlay.is_within(above, nearest(sheet, above[0]), 0.0101));
+  EXPECT_FALSE(overlay.is_within(above, nearest(sheet, above[0]), 0.0099));
+}
+
+/// The planes that part the triangles around a vertex leave room between them: what lies there is beyond each triangle,
+/// as the planes say, and is near to all of them.
+TEST(Overlay, WhatLiesOverAVertexIsMeasured) {
+  SplitMix64 random(11);
+  const auto unit = [&] { return random.unit(); };
+  int are_within = 0;
+  for (int round = 0; round < 200; ++round) {
+    Sheet sheet;
+    sheet.positions = {Vec3d(0.0)};
+    const std::uint32_t sides = 4 + static_cast<std::uint32_t>(round) % 4;
+    for (std::uint32_t i = 0; i < sides; ++i) {
+      const double angle = 6.283185307179586 * (i + 0.5 * unit()) / sides, radius = 0.5 + unit();
+      sheet.positions.emplace_back(radius * std::cos(angle), radius * std::sin(angle), 0.8 * (unit() - 0.5));
+      sheet.triangles.push_back({0, i + 1, (i + 1) % sides + 1});
+    }
+    sheet.link();
+    const LinkedSurface linked = sheet.linked();
+    const double height = 0.4 * (unit() - 0.5);
+    TriangleCorners t;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double angle = 6.283185307179586 * (static_cast<double>(k) + 0.5 * unit()) / 3.0;
+      t[k] = {0.1 * std::cos(angle), 0.1 * std::sin(angle), height};
+    }
+    const double truth = sampled(sheet, t);
+    for (const Overlay::Cuts cuts : {Overlay::Cuts::kAll, Overlay::Cuts::kNeeded}) {
+      Overlay overlay(linked, 48, cuts);
+      EXPECT_FALSE(overlay.is_within(t, nearest(sheet, t[0]), 0.9 * truth)) << round;
+      are_within += overlay.is_within(t, nearest(sheet, t[0]), 1.1 * truth) ? 1 : 0;
+      for (const Overlay::Rest& rest : overlay.rest()) EXPECT_LT(rest.bound, 1.5 * truth) << round;
+    }
+  }
+  EXPECT_GT(are_within, 380);  // of 400; of the rest no single triangle is near to a piece that goes round
+}
+
 TEST(Overlay, BordersNeedlesAndCrowdedEdgesEndNothing) {
   Sheet sheet;
   sheet.positions = {Vec3d(0.0),           Vec3d(1.0, 0.0, 0.0), Vec3d(0.5, 1.0, 0.0), Vec3d(0.5, -1.0, 0.0),
@@ -159,7 +204,7 @@ TEST(Overlay, BordersNeedlesAndCrowdedEdgesEndNothing) {
   sheet.triangles = {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}, {0, 5, 1}, {2, 2, 2}};  // three at one edge, a needle, a point
   sheet.link();
   const LinkedSurface linked = sheet.linked();
-  Overlay overlay(linked, 48);
+  Overlay overlay(linked, 48, Overlay::Cuts::kAll);
   for (std::uint32_t start = 0; start < sheet.triangles.size(); ++start) {
     const TriangleCorners t{Vec3d(-0.2, -0.5, 0.1), Vec3d(1.2, -0.4, 0.1), Vec3d(0.5, 0.9, 0.0)};
     if (!overlay.is_within(t, start, 0.3)) continue;
