@@ -79,6 +79,14 @@ std::uint32_t nearest(const Sheet& sheet, const Vec3d& p) {
   return sheet.tree.triangle_at(sheet.tree.find_nearest(sheet.tree.to_frame(p), {}, 0.0F).slot);
 }
 
+/// No point of a triangle is farther than this, as the last call of is_within() says.
+double bound_of(const Overlay& overlay, double known) {
+  double bound = known;
+  for (const Overlay::Far& far : overlay.far()) bound = std::max(bound, far.distance);
+  for (const Overlay::Rest& rest : overlay.rest()) bound = std::max(bound, rest.bound);
+  return bound;
+}
+
 TEST(Overlay, OfAFlatSheetTheHeightIsKnownFromFewCorners) {
   const Sheet sheet = lattice(4, [](const Vec3d&) { return 0.0; });
   const LinkedSurface linked = sheet.linked();
@@ -129,7 +137,8 @@ TEST(Overlay, WhatIsWithinIsAndWhatIsFarIsAsFar) {
     const double rough = 0.3 * unit() * unit();
     const Sheet sheet = lattice(6, [&](const Vec3d&) { return rough * unit(); });
     const LinkedSurface linked = sheet.linked();
-    Overlay overlay(linked, 48, round % 2 == 0 ? Overlay::Cuts::kAll : Overlay::Cuts::kNeeded);
+    const std::size_t most_pieces = round % 4 < 2 ? 48 : 3;  // 3: most pieces are left uncut
+    Overlay overlay(linked, most_pieces, round % 2 == 0 ? Overlay::Cuts::kAll : Overlay::Cuts::kNeeded);
     for (int i = 0; i < 10; ++i) {
       const Vec3d at(unit(), unit(), 0.1 * unit());
       TriangleCorners t;
@@ -144,6 +153,7 @@ TEST(Overlay, WhatIsWithinIsAndWhatIsFarIsAsFar) {
           if (f.distance == 0.0) continue;
           EXPECT_NEAR(f.distance, sheet.distance_to(f.at), 1e-6);
         }
+        EXPECT_LE(truth, bound_of(overlay, known) * (1.0 + 1e-9));
         ++far;
       }
     }
@@ -169,6 +179,7 @@ TEST(Overlay, WhatLiesOverAVertexIsMeasured) {
   SplitMix64 random(11);
   const auto unit = [&] { return random.unit(); };
   int are_within = 0;
+  std::size_t left = 0;
   for (int round = 0; round < 200; ++round) {
     Sheet sheet;
     sheet.positions = {Vec3d(0.0)};
@@ -191,9 +202,11 @@ TEST(Overlay, WhatLiesOverAVertexIsMeasured) {
       Overlay overlay(linked, 48, cuts);
       EXPECT_FALSE(overlay.is_within(t, nearest(sheet, t[0]), 0.9 * truth)) << round;
       are_within += overlay.is_within(t, nearest(sheet, t[0]), 1.1 * truth) ? 1 : 0;
-      for (const Overlay::Rest& rest : overlay.rest()) EXPECT_LT(rest.bound, 1.5 * truth) << round;
+      EXPECT_LT(bound_of(overlay, 1.1 * truth), 1.5 * truth) << round;
+      left += overlay.rest().size();
     }
   }
+  EXPECT_GT(left, 0U);
   EXPECT_GT(are_within, 380);  // of 400; of the rest no single triangle is near to a piece that goes round
 }
 
@@ -204,11 +217,17 @@ TEST(Overlay, BordersNeedlesAndCrowdedEdgesEndNothing) {
   sheet.triangles = {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}, {0, 5, 1}, {2, 2, 2}};  // three at one edge, a needle, a point
   sheet.link();
   const LinkedSurface linked = sheet.linked();
-  Overlay overlay(linked, 48, Overlay::Cuts::kAll);
-  for (std::uint32_t start = 0; start < sheet.triangles.size(); ++start) {
-    const TriangleCorners t{Vec3d(-0.2, -0.5, 0.1), Vec3d(1.2, -0.4, 0.1), Vec3d(0.5, 0.9, 0.0)};
-    if (!overlay.is_within(t, start, 0.3)) continue;
-    EXPECT_LE(sampled(sheet, t), 0.3 + 1e-9);
+  for (const Overlay::Cuts cuts : {Overlay::Cuts::kAll, Overlay::Cuts::kNeeded}) {
+    Overlay overlay(linked, 48, cuts);
+    for (std::uint32_t start = 0; start < sheet.triangles.size(); ++start) {
+      const TriangleCorners t{Vec3d(-0.2, -0.5, 0.1), Vec3d(1.2, -0.4, 0.1), Vec3d(0.5, 0.9, 0.0)};
+      const double truth = sampled(sheet, t);
+      for (const double share : {0.1, 0.9, 1.1, 10.0}) {
+        const bool is_within = overlay.is_within(t, start, share * truth);
+        EXPECT_FALSE(is_within && share < 1.0) << start;
+        EXPECT_LE(truth, bound_of(overlay, share * truth) * (1.0 + 1e-9)) << start;
+      }
+    }
   }
 }
 

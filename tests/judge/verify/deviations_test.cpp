@@ -51,7 +51,8 @@ scene::Primitive make_loose_sheets(std::uint64_t seed) {
     const Vec3d corner = Vec3d(1.5) + random.in_cube(1.5);
     const std::uint32_t first = piece * kRow * kRow;
     for (std::uint32_t v = 0; v < kRow * kRow; ++v) {
-      out.positions.emplace_back(corner + 0.1 * Vec3d(v % kRow / 5.0, v / kRow / 5.0, 0.1 * random.unit()));
+      const std::uint32_t column = v % kRow, row = v / kRow;
+      out.positions.emplace_back(corner + 0.1 * Vec3d(column / 5.0, row / 5.0, 0.1 * random.unit()));
     }
     for (std::uint32_t q = 0; q < kSide * kSide; ++q) {
       const std::uint32_t a = first + q / kSide * kRow + q % kSide;
@@ -96,8 +97,7 @@ void scale_errors(AssetEdit& edit, float factor) {
   edit.seal();
 }
 
-// More triangles than the builder looks at without shortcuts: a triangle between pieces is far from the source where
-// none of its few points is.
+// A triangle between loose pieces is far from the source where none of a few points of it is.
 TEST(Deviations, BetweenLoosePiecesAreTrue) {
   for (const std::uint64_t seed : {1, 2}) {
     const scene::Scene scene = lab::as_scene(lab::as_mesh(make_loose_sheets(seed)));
