@@ -332,6 +332,10 @@ class Sweep {
       m.error = done.error().message();
     }
     m.seconds = seconds_since(start);
+    if (const Measurement* first = state_.find(kind, key, round)) {  // drawn again: the plan is that of the first time
+      unrecorded_ += m.seconds;
+      m.seconds = first->seconds;
+    }
     return state_.add(std::move(m));
   }
 
@@ -350,7 +354,7 @@ class Sweep {
           twin && !find_measured(MeasurementKind::kDraw, key, 0)) {
         Measurement same = *twin;
         same.key = key;
-        same.seconds = 0.0;
+        same.seconds = seconds_of(MeasurementKind::kDraw, key, 0);
         same.is_stored = false;
         if (done = state_.add(std::move(same)); !done) break;
       }
@@ -422,7 +426,7 @@ class Sweep {
   std::vector<PlannedPoint> planned_;
   std::vector<Group> groups_;
   std::uint32_t round_ = 1;
-  double unrecorded_ = 0.0;  ///< of what was built again because its asset is gone
+  double unrecorded_ = 0.0;  ///< of what was built or drawn again because it is gone
   bool is_baseline_there_ = false;
 };
 

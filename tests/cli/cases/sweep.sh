@@ -22,6 +22,8 @@ ls short/pictures >drawn.txt
 rm short/pictures/*
 code sweep city.glb -o short --quiet --rounds 1 --samples 200 --budget 1s
 ls short/pictures | cmp - drawn.txt && echo "drawn again"
+# At the time that it took first: the plan is made by it, and would be another.
+grep -o '"kind":"draw","key":"[^"]*","round":0,"seconds":[^,]*' short/sweep-state.txt | sort -u | sed 's/,"round".*//' | uniq -d
 # What is recommended keeps what was wished.
 json sweep sweep a.glb -o report --rounds 2 --samples 500 --budget 2s --want 'deviation<=1, bytes min' --format json
 # Killed twice on its way: nothing that was finished is measured again, and the rest is.
