@@ -97,15 +97,15 @@ class Overlay {
   };
 
   /// Where a triangle is cut: wherever it passes from one triangle of the surface to another, so that below() has all
-  /// that it lies over; or not where the one is near enough to all of it.
+  /// that it lies over, up to the limit of pieces; or not where the one is near enough to all of it.
   enum class Cuts : std::uint8_t { kAll, kNeeded };
   /// After `most_pieces` what is left of a triangle is not cut any more.
   Overlay(const LinkedSurface& surface, std::size_t most_pieces, Cuts cuts)
       : surface_(surface), most_pieces_(most_pieces), cuts_(cuts) {}
 
   /// Whether all of a triangle is within `known`. Else far() has corners that are beyond, and rest() what is open.
-  /// `start`: a triangle of the surface that is near to the first corner. `is_raised`: by a corner that is beyond
-  /// `known` is raised, and what is nearer than that is left out.
+  /// `start`: a triangle of the surface near to some point of it, best to its middle. `is_raised`: by a corner that is
+  /// beyond `known` is raised, and what is nearer than that is left out.
   [[nodiscard]] bool is_within(const TriangleCorners& corners, std::uint32_t start, double known,
                                bool is_raised = true);
 

@@ -16,6 +16,7 @@ namespace meshlode::judge {
 struct NearestPoint {
   double distance2 = std::numeric_limits<double>::infinity();
   std::uint32_t triangle = kNoId;  ///< of the surface; ties go to any
+  bool is_nearest = true;          ///< false: the search ended at one that would do
 };
 
 /// Squared distance from a point to a triangle, which may be a needle, a segment or a point.
@@ -42,23 +43,27 @@ class TriangleTree {
   [[nodiscard]] NearestPoint nearest(const Vec3d& point, std::uint32_t hint = kNoId) const {
     return search(point, hint, NearestPoint(), 0.0);
   }
-  /// Some triangle within a squared distance, which one by the hint, or where there is none the nearest.
+  /// The nearest triangle, or after many that were tried one within a squared distance: which one by the hint.
   [[nodiscard]] NearestPoint near_enough(double distance2, const Vec3d& point, std::uint32_t hint) const {
-    return search(point, hint, NearestPoint(), distance2);
+    return search(point, hint, NearestPoint(), 0.0, distance2);
   }
   /// Some triangle that is nearer than a squared distance, or kNoId and that distance where there is none, but for the
   /// rounding of boxes.
   [[nodiscard]] NearestPoint any_within(double distance2, const Vec3d& point, std::uint32_t hint) const {
     return search(point, hint, {distance2, kNoId}, distance2);
   }
+  /// A triangle within a squared distance (inclusive) of all points of another one, or kNoId.
+  [[nodiscard]] std::uint32_t find_covering(const std::array<Vec3d, 3>& corners, double distance2) const;
   /// Triangles of the surface, those that are near each other one after another; one in several leaves several times.
   [[nodiscard]] std::span<const std::uint32_t> triangles_in_order() const { return triangle_; }
   /// Every triangle within a squared distance (inclusive), appended in no particular order that is always the same.
   void find_within(const Vec3d& point, double distance2, std::vector<NearestPoint>& found) const;
 
  private:
-  /// The nearest triangle that is nearer than `best`, or any that is, within `enough`; both squared.
-  [[nodiscard]] NearestPoint search(const Vec3d& point, std::uint32_t hint, NearestPoint best, double enough) const;
+  /// The nearest triangle that is nearer than `best`, or any that is, within `enough`, and after many within `at_last`;
+  /// all squared.
+  [[nodiscard]] NearestPoint search(const Vec3d& point, std::uint32_t hint, NearestPoint best, double enough,
+                                    double at_last = 0.0) const;
   /// In the tree's frame: floats of about unit size.
   struct Box {
     std::array<float, 3> low, high;

@@ -258,6 +258,64 @@ TEST(Metrics, TrianglesInSeveralLeavesAreFoundOnceAndAtTheirDistance) {
   }
 }
 
+TEST(Metrics, ATriangleThatCoversAnotherIsFoundWhereThereIsOne) {
+  RandomSource random(56);
+  for (const double offset : {0.0, 1e6}) {
+    const Surface s = make_spokes(random, 300, offset);
+    const TriangleTree tree(s);
+    int covered = 0;
+    for (int i = 0; i < 1000; ++i) {
+      const auto& of = s.triangles[random.below(static_cast<std::uint32_t>(s.triangles.size()))];
+      std::array<Vec3d, 3> part;
+      for (Vec3d& p : part) {
+        const double u = random.between(0.0, 0.5), v = random.between(0.0, 0.5);
+        p = s.positions[of[0]] * (1.0 - u - v) + s.positions[of[1]] * u + s.positions[of[2]] * v +
+            random.in_cube(i % 2 == 0 ? 1e-3 : 0.0);
+      }
+      const double reach2 = random.log_between(1e-8, 1e-3);
+      const auto covers = [&](std::uint32_t t) {
+        const auto& ids = s.triangles[t];
+        return std::all_of(part.begin(), part.end(), [&](const Vec3d& p) {
+          return distance2_to_triangle(p, s.positions[ids[0]], s.positions[ids[1]], s.positions[ids[2]]) <= reach2;
+        });
+      };
+      bool is_any = false;
+      for (std::uint32_t t = 0; t < s.triangles.size(); ++t) is_any = is_any || covers(t);
+      const std::uint32_t found = tree.find_covering(part, reach2);
+      EXPECT_EQ(found != kNoId, is_any);
+      EXPECT_TRUE(found == kNoId || covers(found));
+      covered += is_any ? 1 : 0;
+    }
+    EXPECT_GT(covered, 300);
+    EXPECT_LT(covered, 950);
+  }
+}
+
+TEST(Metrics, OneThatIsNearEnoughAtLastIsTakenAmongManyAlone) {
+  // Edges along one line across their boxes, a tenth beside the point.
+  const auto make_lines = [](std::uint32_t count) {
+    Surface s;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const double end = 1.0 + 1e-4 * i, beside = 0.1 + 1e-6 * i;
+      s.positions.push_back({-end, -end + beside, -end});
+      s.positions.push_back({end, end + beside, end});
+      s.triangles.push_back({2 * i, 2 * i + 1, 2 * i + 1});
+    }
+    return s;
+  };
+  const Surface few = make_lines(4), many = make_lines(5000);
+  const TriangleTree tree_of_few(few), tree_of_many(many);
+  const NearestPoint of_few = tree_of_few.near_enough(1.0, Vec3d(0.0), kNoId);
+  EXPECT_TRUE(of_few.is_nearest);
+  EXPECT_EQ(of_few.distance2, tree_of_few.nearest(Vec3d(0.0)).distance2);
+  const NearestPoint of_many = tree_of_many.near_enough(1.0, Vec3d(0.0), kNoId);
+  EXPECT_FALSE(of_many.is_nearest);
+  EXPECT_LE(of_many.distance2, 1.0);
+  const NearestPoint beyond = tree_of_many.near_enough(1e-3, Vec3d(0.0), kNoId);
+  EXPECT_TRUE(beyond.is_nearest) << "none is within that";
+  EXPECT_EQ(beyond.distance2, tree_of_many.nearest(Vec3d(0.0)).distance2);
+}
+
 // The hub's surroundings lie in the box of every fourth spoke. Without pieces a wheel takes a hundred times as long to
 // search as a square of as many triangles, with them thirty times.
 TEST(Metrics, TheHubOfAWheelIsNoTrap) {

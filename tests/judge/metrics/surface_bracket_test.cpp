@@ -273,7 +273,54 @@ TEST(SurfaceBracket, DecidesWhatLiesAmongManyTrianglesThatCross) {
   EXPECT_EQ(within.undecided, 0U);
   EXPECT_EQ(within.upper, 0.01);
   EXPECT_LE(within.lower, exact.upper);
-  EXPECT_LT(within.splits, 34000U) << "it takes 36,533 without those that pieces beside it have met";
+  EXPECT_LT(within.splits, 34000U) << "more without a triangle that all of a piece is near to";
+}
+
+TEST(SurfaceBracket, DecidesLargeTrianglesOverManyVerticesOfAFlatSheet) {
+  // As a sheet without error is: off by what a grid moves its vertices.
+  RandomSource random(78);
+  constexpr std::uint32_t kCells = 40;
+  constexpr double kNoise = 1e-7;
+  Surface fine;
+  for (std::uint32_t y = 0; y <= kCells; ++y) {
+    for (std::uint32_t x = 0; x <= kCells; ++x) {
+      fine.positions.push_back(Vec3d(x, y, 0) / double{kCells} + random.in_cube(kNoise));
+    }
+  }
+  for (std::uint32_t y = 0; y < kCells; ++y) {
+    for (std::uint32_t x = 0; x < kCells; ++x) {
+      const std::uint32_t a = y * (kCells + 1) + x, b = a + kCells + 1;
+      fine.triangles.push_back({a, a + 1, b + 1});
+      fine.triangles.push_back({a, b + 1, b});
+    }
+  }
+  // Diagonals of both ways: along the edges of the sheet, and across them.
+  for (const bool is_along : {true, false}) {
+    const Vec3d a{0.01, 0.013, 0}, b{0.98, 0.02, 0}, c{0.97, 0.985, 0}, d{0.015, 0.99, 0};
+    const Surface coarse = is_along ? triangles_of({{a, b, c}, {a, c, d}}) : triangles_of({{a, b, d}, {b, c, d}});
+    const Bracket found = bracket(coarse, fine, {.enough = 4.0 * kNoise, .budget = 120000});
+    EXPECT_EQ(found.undecided, 0U);
+    EXPECT_EQ(found.upper, 4.0 * kNoise);
+    EXPECT_GT(found.lower, 0.0);
+  }
+}
+
+TEST(SurfaceBracket, DecidesACopyAmongManyTrianglesOfALattice) {
+  // Each triangle lies beside its copy; many others are near to each of its corners.
+  RandomSource random(79);
+  std::vector<std::array<Vec3d, 3>> triangles(4000);
+  for (auto& t : triangles) {
+    for (Vec3d& p : t) p = glm::floor(random.in_cube(4.0) + 0.5) * 0.25;
+  }
+  constexpr double kMove = 1e-4;
+  std::vector<std::array<Vec3d, 3>> moved = triangles;
+  for (auto& t : moved) {
+    for (Vec3d& p : t) p = p * (1.0 - kMove) + Vec3d(kMove, 0, 0);
+  }
+  const Surface source = triangles_of(triangles), cut = triangles_of(moved);
+  const Bracket found = bracket(cut, source, {.enough = 5.0 * kMove, .budget = 64000});
+  EXPECT_EQ(found.undecided, 0U);
+  EXPECT_EQ(found.upper, 5.0 * kMove);
 }
 
 TEST(SurfaceBracket, OfFoldedSheetsHoldsDenseSamples) {
