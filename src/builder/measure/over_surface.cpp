@@ -61,11 +61,19 @@ void LevelMeter::ask_units(const LevelSurface& surface, UnitChunk& chunk) const 
   chunk.moved.shrink_to_fit();
 }
 
-/// `normal`: of the source triangle.
-void LevelMeter::mark_seen(const LevelSurface& surface, std::uint32_t triangle, const Vec3f& normal, bool is_border) {
+/// Whether the source passes from one triangle of the surface to another without leaving it.
+bool LevelMeter::has_common_corner(const LevelSurface& surface, std::uint32_t a, std::uint32_t b) {
+  if (a == b) return true;
+  const LevelSurface::Triangle& of_b = surface.triangles[b];
+  return std::ranges::any_of(surface.triangles[a],
+                             [&](std::uint32_t v) { return v == of_b[0] || v == of_b[1] || v == of_b[2]; });
+}
+
+/// `normal`: of the source triangle. `is_end`: the source ends there, or leaps to another part of the surface.
+void LevelMeter::mark_seen(const LevelSurface& surface, std::uint32_t triangle, const Vec3f& normal, bool is_end) {
   const std::uint8_t before = seen_[triangle].load(std::memory_order_relaxed);
   if (before == (kSeen | kOpen)) return;
-  const bool is_open = is_border || glm::dot(normal, surface.normal[triangle]) < kParallel;
+  const bool is_open = is_end || glm::dot(normal, surface.normal[triangle]) < kParallel;
   const std::uint8_t flags = is_open ? kSeen | kOpen : kSeen;
   if (before == flags) return;
   seen_[triangle].fetch_or(flags, std::memory_order_relaxed);
@@ -122,11 +130,13 @@ void LevelMeter::check_units(const LevelSurface& surface, UnitChunk& chunk) {
       const std::array<std::uint32_t, 3> k{n[0].triangle, n[1].triangle, n[2].triangle};
       const TriangleCorners corners = source.corners(t.id);
       const double within = owners.known();
+      const bool is_leap = !has_common_corner(surface, k[0], k[1]) || !has_common_corner(surface, k[1], k[2]) ||
+                           !has_common_corner(surface, k[2], k[0]);
       bool is_at_border = false;
       const Vec3f normal = source_normal_.empty() ? unit_normal(corners) : source_normal_[t.id];
       for (std::size_t j = 0; j < 3; ++j) {
         const bool is_border = units_.is_border(units_.vertices(unit)[t.corner[j]]);
-        mark_seen(surface, k[j], normal, is_border);
+        mark_seen(surface, k[j], normal, is_border || is_leap);
         is_at_border = is_at_border || is_border;
       }
       if (k[0] == k[1] && k[1] == k[2]) continue;
@@ -141,7 +151,7 @@ void LevelMeter::check_units(const LevelSurface& surface, UnitChunk& chunk) {
         chunk.moved.push_back({owner.value, to.value, t.id, true});
       };
       for (const std::uint32_t below : overlay.below()) {
-        mark_seen(surface, below, normal, is_at_border);
+        mark_seen(surface, below, normal, is_at_border || is_leap);
         is_near_to(maker(surface, below));
       }
       if (is_within) continue;
