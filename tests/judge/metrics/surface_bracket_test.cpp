@@ -132,7 +132,8 @@ TEST(SurfaceBracket, FindsTheMiddleOfAFrame) {
   const std::array<Vec3d, 3> corner{Vec3d{-0.5, 0, 0}, Vec3d{0.5, 0, 0}, Vec3d{0, 6, 0}};
   const double side = std::hypot(6.0, 0.5), inradius = 6.0 / (1.0 + 2.0 * side);
   for (std::size_t first = 0; first < 3; ++first) {
-    const Vec3d a = corner[first], b = corner[(first + 1) % 3], c = corner[(first + 2) % 3], out{0, 2, 0};
+    const Vec3d &a = corner[first], &b = corner[(first + 1) % 3], &c = corner[(first + 2) % 3];
+    const Vec3d out{0, 2, 0};
     const Surface frame = triangles_of({{a, b, a + b - out}, {b, c, b + c - out}, {c, a, c + a - out}});
     expect_truth(bracket(triangles_of({{a, b, c}}), frame), inradius);
   }
