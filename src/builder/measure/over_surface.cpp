@@ -61,7 +61,7 @@ void LevelMeter::ask_units(const LevelSurface& surface, UnitChunk& chunk) const 
   chunk.moved.shrink_to_fit();
 }
 
-/// Whether the source passes from one triangle of the surface to another without leaving it.
+/// Whether two triangles touch. Between two that do not, and that it is near to, the source may leap.
 bool LevelMeter::has_common_corner(const LevelSurface& surface, std::uint32_t a, std::uint32_t b) {
   if (a == b) return true;
   const LevelSurface::Triangle& of_b = surface.triangles[b];
@@ -142,7 +142,7 @@ void LevelMeter::check_units(const LevelSurface& surface, UnitChunk& chunk) {
       if (k[0] == k[1] && k[1] == k[2]) continue;
       const float nearest = std::min(n[0].distance, std::min(n[1].distance, n[2].distance));
       if (static_cast<double>(nearest) + (1.0 + kSlack) * longest_edge(corners) <= within) continue;
-      if (!is_at_border && is_flat(surface, corners, normal, k, within)) continue;
+      if (!is_at_border && !is_leap && is_flat(surface, corners, normal, k, within)) continue;
       // A distance over one group's part says nothing of what another one's is off by.
       const bool is_within = overlay.is_within(corners, k[0], within, owners.is_one());
       const GroupId owner = owners.is_one() ? GroupId(chunk.group) : owner_of(unit, t);

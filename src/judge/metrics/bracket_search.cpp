@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 namespace meshlode::judge {
 namespace {
@@ -11,7 +12,7 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // Of regula falsi. Most places are found in two; where a surface is flat to the last digits it is all the way to them.
 constexpr int kMostSteps = 40;
-constexpr double kInside = 1e-6;  // of a piece, the least share on each side of a point inside it
+constexpr double kInside = 1e-6;  // the least weight of each corner at a point that counts as inside
 
 /// The largest number whose root is not above `distance`: what is compared squared is so as distances are. A corner
 /// that was met at a distance is then near enough wherever that is, and each round of a search has something to split.
@@ -60,14 +61,14 @@ NearParts BracketSearch::look_at(const BracketPiece& first, std::uint64_t most, 
     }
     // A corner that is near to nothing stays so for as long as `known` is what it is.
     const bool is_far = piece.near[0] == 0 || piece.near[1] == 0 || piece.near[2] == 0;
+    if (const std::uint32_t all = is_far ? kNoId : find_one_for_all(piece); all != kNoId) {
+      near.add(part_of(all));
+      continue;
+    }
     if (is_far || found.splits == end) {
       found.open.push_back(piece);
       found.open.back().upper = upper_of(piece);
       near.give_up();
-      continue;
-    }
-    if (const std::uint32_t all = find_one_for_all(piece); all != kNoId) {
-      near.add(part_of(all));
       continue;
     }
     ++found.splits;
@@ -104,10 +105,10 @@ std::uint8_t BracketSearch::near_of(const BracketPiece& piece, const Vec3d& p) c
   return near;
 }
 
-std::size_t BracketSearch::add(BracketPiece& piece, std::uint32_t triangle) const {
+void BracketSearch::add(BracketPiece& piece, std::uint32_t triangle) const {
   std::size_t place = 0;
   while (place < piece.count && piece.candidates[place] != triangle) ++place;
-  if (place < piece.count) return place;
+  if (place < piece.count) return;
   if (place == BracketPiece::kMostCandidates) {
     int least = 4;
     for (std::size_t k = 0; k < BracketPiece::kMostCandidates; ++k) {
@@ -128,7 +129,6 @@ std::size_t BracketSearch::add(BracketPiece& piece, std::uint32_t triangle) cons
     const auto bit = static_cast<std::uint8_t>(1U << place);
     piece.near[c] = static_cast<std::uint8_t>(is_in ? piece.near[c] | bit : piece.near[c] & ~bit);
   }
-  return place;
 }
 
 std::uint32_t BracketSearch::find_one_for_all(const BracketPiece& piece) const {
@@ -146,8 +146,7 @@ std::uint8_t BracketSearch::ask(BracketPiece& piece, const Vec3d& p, std::uint32
 }
 
 void BracketSearch::split(BracketPiece piece, BracketFound& found) {
-  Vec3d x;
-  if (meets_inside(piece, x)) return split_at(piece, x, found);
+  if (const std::optional<Vec3d> meeting = meeting_inside(piece)) return split_at(piece, *meeting, found);
   std::size_t edge = 3;
   double longest = -1.0;
   for (std::size_t e = 0; e < 3; ++e) {
@@ -158,6 +157,7 @@ void BracketSearch::split(BracketPiece piece, BracketFound& found) {
     edge = e;
   }
   if (edge == 3) return split_at(piece, (piece.at[0] + piece.at[1] + piece.at[2]) / 3.0, found);  // seldom
+  Vec3d x;
   const std::uint8_t near = cross_edge(piece, edge, x, found);
   put(piece, (edge + 1) % 3, x, near);
   put(piece, edge, x, near);
@@ -231,24 +231,25 @@ bool BracketSearch::has_corner(const BracketPiece& piece, std::size_t corner, co
   return false;
 }
 
-bool BracketSearch::meets_inside(const BracketPiece& piece, Vec3d& x) const {
-  const auto& [p, q, r] = piece.at;
+std::optional<Vec3d> BracketSearch::meeting_inside(const BracketPiece& piece) const {
+  const Vec3d &p = piece.at[0], &q = piece.at[1], &r = piece.at[2];
   const Vec3d n = glm::cross(q - p, r - p);
-  const double nn = glm::dot(n, n);
-  if (!(nn > 0.0)) return false;
+  const auto nearest_inside = [&](const Vec3d& v) -> std::optional<Vec3d> {
+    // Of weights: whatever rounding does to the normal of a needle, the point is of the piece.
+    const double of_p = glm::dot(glm::cross(r - q, v - q), n), of_q = glm::dot(glm::cross(p - r, v - r), n),
+                 of_r = glm::dot(glm::cross(q - p, v - p), n), sum = of_p + of_q + of_r;
+    if (!(std::min(of_p, std::min(of_q, of_r)) > kInside * sum)) return std::nullopt;
+    return p * (of_p / sum) + q * (of_q / sum) + r * (of_r / sum);
+  };
   for (std::uint32_t bits = piece.near[0]; bits != 0; bits &= bits - 1) {
     for (const std::uint32_t w : b_.triangles[piece.candidates[first_of(bits)]]) {
       const Vec3d& v = b_.positions[w];
-      const double h = glm::dot(v - p, n);
-      if (h * h > known2_ * nn || !has_corner(piece, 1, v) || !has_corner(piece, 2, v)) continue;
-      x = v - n * (h / nn);
-      const bool is_inside = glm::dot(glm::cross(q - p, x - p), n) > kInside * nn &&
-                             glm::dot(glm::cross(r - q, x - q), n) > kInside * nn &&
-                             glm::dot(glm::cross(p - r, x - r), n) > kInside * nn;
-      if (is_inside) return true;
+      if (!has_corner(piece, 1, v) || !has_corner(piece, 2, v)) continue;
+      const std::optional<Vec3d> x = nearest_inside(v);
+      if (x && glm::dot(*x - v, *x - v) <= known2_) return x;
     }
   }
-  return false;
+  return std::nullopt;
 }
 
 }  // namespace meshlode::judge

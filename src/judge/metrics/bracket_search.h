@@ -6,6 +6,7 @@
 #include <bit>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -73,11 +74,12 @@ class BracketSearch {
   /// The candidates that are near enough to a point.
   [[nodiscard]] std::uint8_t near_of(const BracketPiece& piece, const Vec3d& p) const;
 
-  /// Adds a candidate, where there is no room in place of one that says least. Returns its place.
-  std::size_t add(BracketPiece& piece, std::uint32_t triangle) const;
+  /// Adds a candidate, where there is no room in place of one that says least.
+  void add(BracketPiece& piece, std::uint32_t triangle) const;
 
-  /// Among triangles that cross, any are near to a corner, and a piece has met as many as it holds before it meets the
-  /// one that all of it is near to. To ask the tree for that one at every split takes a third more time for the bunny.
+  /// A triangle that all of a piece with as many candidates as it holds is near to, or kNoId. Among triangles that
+  /// cross, many are near to each corner, and seldom the one that is near to all. The tree is not asked for other
+  /// pieces: that takes a third more time for the bunny.
   [[nodiscard]] std::uint32_t find_one_for_all(const BracketPiece& piece) const;
 
   /// A triangle that is near enough to a point becomes a candidate, or where there is none the nearest.
@@ -98,10 +100,10 @@ class BracketSearch {
   /// Whether a triangle that a corner is near to has a vertex there.
   [[nodiscard]] bool has_corner(const BracketPiece& piece, std::size_t corner, const Vec3d& v) const;
 
-  /// Whether triangles near to each of the corners meet in a vertex, and `x` inside is near to that. Splits of edges
-  /// come ever closer to it, and never there: without, 20 flat sheets of 2,500 triangles leave 8 of their 10 cuts
-  /// undecided.
-  bool meets_inside(const BracketPiece& piece, Vec3d& x) const;
+  /// The point inside that is nearest to a vertex which triangles near to each of the corners share, if it is near
+  /// enough to it. Splits of edges come ever closer to such a vertex, and never there: by them alone, 20 flat sheets of
+  /// 2,500 triangles leave 8 of their 10 cuts undecided.
+  [[nodiscard]] std::optional<Vec3d> meeting_inside(const BracketPiece& piece) const;
 
   const Surface& b_;
   const TriangleTree& tree_;

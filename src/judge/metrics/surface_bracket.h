@@ -30,7 +30,7 @@ struct NearParts {
 };
 
 struct Bracket {
-  double lower = 0.0;           ///< a distance that was met; 0: none but small ones
+  double lower = 0.0;           ///< a distance that was met; 0: none, where all may be within `enough`
   double upper = 0.0;           ///< no point is farther
   Vec3d worst{0.0};             ///< where `lower` was met
   std::uint64_t undecided = 0;  ///< pieces that the budget did not reach, or not to their end
@@ -47,8 +47,9 @@ struct BracketTarget {
 
 /// How far the farthest point of some triangles is from another surface, by branch and bound. A distance to a triangle
 /// is convex, so a piece is no farther than the farthest of its corners from any one triangle. A piece that no triangle
-/// is near enough to is split where a triangle that is near to one corner gives way to one that is near to another:
-/// what lies over two triangles of a smooth surface is done with after a split of each edge, however long it is.
+/// is near enough to is split at a vertex in which triangles near to its corners meet; or on an edge, where a triangle
+/// that is near to one end gives way to one that is near to the other: what lies over two triangles of a smooth surface
+/// is done with after a split of each edge, however long it is.
 /// Distances that are met on the way are exact. The same for any number of threads. \pre neither surface is empty
 [[nodiscard]] Bracket bracket_one_way(const Surface& a, std::span<const std::uint32_t> triangles,
                                       const BracketTarget& b, const BracketOptions& options);

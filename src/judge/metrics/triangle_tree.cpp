@@ -98,7 +98,7 @@ inline double TriangleTree::distance2_to_box(const Box& box, const Vec3d& p) {
 }
 
 inline double TriangleTree::distance2_at(const Vec3d& point, std::uint32_t place, double limit) const {
-  const auto& t = shared_.empty() ? corners_[place] : shared_[triangle_[place]];
+  const auto& t = corners_at(place);
   const Vec3d &a = positions_[t[0]], &b = positions_[t[1]], &c = positions_[t[2]];
   if (has_far_plane(point, a, b, c, limit)) return std::numeric_limits<double>::infinity();
   return distance2_to_triangle(point, a, b, c);
@@ -127,7 +127,7 @@ NearestPoint TriangleTree::search(const Vec3d& point, std::uint32_t hint, Neares
   stack[size++] = {0, distance2_to_box(nodes_[0].box, at)};
   while (size > 0) {
     if (best.triangle != kNoId && best.distance2 <= enough) {
-      best.is_nearest = false;
+      best.is_nearest = best.distance2 == 0.0;
       return best;
     }
     const Entry entry = stack[--size];
@@ -148,38 +148,11 @@ NearestPoint TriangleTree::search(const Vec3d& point, std::uint32_t hint, Neares
   return best;
 }
 
-std::uint32_t TriangleTree::find_covering(const std::array<Vec3d, 3>& corners, double distance2) const {
-  if (nodes_.empty()) return kNoId;
-  const Vec3d middle = (corners[0] + corners[1] + corners[2]) / 3.0, at = to_frame(middle);
-  const double limit = distance2 * (scale_ * scale_);
-  std::array<std::uint32_t, 64> stack;
-  std::size_t size = 0;
-  stack[size++] = 0;
-  while (size > 0) {
-    const Node& node = nodes_[stack[--size]];
-    if (distance2_to_box(node.box, at) > limit) continue;
-    if (node.count == 0) {
-      stack[size++] = node.first;
-      stack[size++] = node.first + 1;
-      continue;
-    }
-    for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-      const auto& t = shared_.empty() ? corners_[i] : shared_[triangle_[i]];
-      const Vec3d &a = positions_[t[0]], &b = positions_[t[1]], &c = positions_[t[2]];
-      const bool is_near =
-          is_near_triangle(middle, a, b, c, distance2) && is_near_triangle(corners[0], a, b, c, distance2) &&
-          is_near_triangle(corners[1], a, b, c, distance2) && is_near_triangle(corners[2], a, b, c, distance2);
-      if (is_near) return triangle_[i];
-    }
-  }
-  return kNoId;
-}
-
-void TriangleTree::find_within(const Vec3d& point, double distance2, std::vector<NearestPoint>& found) const {
+template <class Visit>
+void TriangleTree::visit_near(const Vec3d& point, double distance2, const Visit& visit) const {
   if (nodes_.empty()) return;
   const Vec3d at = to_frame(point);
   const double limit = distance2 * (scale_ * scale_);
-  const auto first_found = static_cast<std::ptrdiff_t>(found.size());
   std::array<std::uint32_t, 64> stack;
   std::size_t size = 0;
   stack[size++] = 0;
@@ -192,10 +165,32 @@ void TriangleTree::find_within(const Vec3d& point, double distance2, std::vector
       continue;
     }
     for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-      const double d = distance2_at(point, i, distance2);
-      if (d <= distance2) found.push_back({d, triangle_[i]});
+      if (visit(i)) return;
     }
   }
+}
+
+std::uint32_t TriangleTree::find_covering(const std::array<Vec3d, 3>& corners, double distance2) const {
+  std::uint32_t found = kNoId;
+  const Vec3d middle = (corners[0] + corners[1] + corners[2]) / 3.0;
+  visit_near(middle, distance2, [&](std::uint32_t i) {
+    const auto& t = corners_at(i);
+    const Vec3d &a = positions_[t[0]], &b = positions_[t[1]], &c = positions_[t[2]];
+    const auto is_near = [&](const Vec3d& p) { return is_near_triangle(p, a, b, c, distance2); };
+    const bool covers = is_near(middle) && is_near(corners[0]) && is_near(corners[1]) && is_near(corners[2]);
+    if (covers) found = triangle_[i];
+    return covers;
+  });
+  return found;
+}
+
+void TriangleTree::find_within(const Vec3d& point, double distance2, std::vector<NearestPoint>& found) const {
+  const auto first_found = static_cast<std::ptrdiff_t>(found.size());
+  visit_near(point, distance2, [&](std::uint32_t i) {
+    const double d = distance2_at(point, i, distance2);
+    if (d <= distance2) found.push_back({d, triangle_[i]});
+    return false;
+  });
   if (triangle_.size() == place_.size()) return;  // else a triangle was met in several pieces
   const auto begin = found.begin() + first_found;
   std::sort(begin, found.end(), [](const NearestPoint& a, const NearestPoint& b) { return a.triangle < b.triangle; });

@@ -104,6 +104,13 @@ class TriangleTree {
   void split(const Place& place, Items& items, std::uint32_t first, std::uint32_t count);
   void copy(const Surface& surface);
   [[nodiscard]] static double distance2_to_box(const Box& box, const Vec3d& p);
+  /// Of a triangle of a leaf.
+  [[nodiscard]] const std::array<std::uint32_t, 3>& corners_at(std::uint32_t place) const {
+    return shared_.empty() ? corners_[place] : shared_[triangle_[place]];
+  }
+  /// Places of leaves whose boxes are within a squared distance, until `visit` returns true.
+  template <class Visit>
+  void visit_near(const Vec3d& point, double distance2, const Visit& visit) const;
   /// To the triangle of a leaf; any number that is greater than `limit` where the true one is.
   [[nodiscard]] double distance2_at(const Vec3d& point, std::uint32_t place, double limit) const;
 

@@ -318,7 +318,7 @@ class Sweep {
     return Ok{};
   }
 
-  /// Takes a measurement that the state lacks; where it fails, so does the point.
+  /// Takes a measurement that the state lacks, or whose picture is gone; where it fails, so does the point.
   template <class Take>
   Status take(MeasurementKind kind, const std::string& key, std::uint32_t round, const Take& measure) {
     if (find_measured(kind, key, round)) return Ok{};
@@ -332,7 +332,7 @@ class Sweep {
       m.error = done.error().message();
     }
     m.seconds = seconds_since(start);
-    if (const Measurement* first = state_.find(kind, key, round)) {  // drawn again: the plan is that of the first time
+    if (const Measurement* first = state_.find(kind, key, round)) {  // drawn again: the plan depends on the first time
       unrecorded_ += m.seconds;
       m.seconds = first->seconds;
     }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <tbb/task_arena.h>
 
+#include <array>
 #include <cmath>
 #include <numeric>
 
@@ -322,6 +323,27 @@ TEST(SurfaceBracket, DecidesACopyAmongManyTrianglesOfALattice) {
   const Bracket found = bracket(cut, source, {.enough = 5.0 * kMove, .budget = 64000});
   EXPECT_EQ(found.undecided, 0U);
   EXPECT_EQ(found.upper, 5.0 * kMove);
+}
+
+TEST(SurfaceBracket, DividesANeedleInItsOwnPoints) {
+  // The normal of such a needle is mostly rounding, and what is found by it lies beside the needle.
+  RandomSource random(80);
+  for (int i = 0; i < 5000; ++i) {
+    const double width = random.log_between(1e-17, 1e-9), enough = random.log_between(1e-3, 1e-1);
+    const Vec3d p = random.in_cube(1.0), q = p + glm::normalize(random.in_cube(1.0));
+    const auto beside = [&](double along) { return p + (q - p) * along + random.in_cube(0.7 * enough); };
+    const Vec3d r = p + (q - p) * random.between(0.3, 0.7) + random.in_cube(width);
+    Surface fan;
+    const double of_p = random.between(0.1, 0.4), of_q = random.between(0.1, 0.4);
+    fan.positions.push_back(p * of_p + q * of_q + r * (1.0 - of_p - of_q));
+    for (int k = 0; k < 4; ++k) fan.positions.push_back(beside(k / 3.0));
+    for (std::uint32_t k = 1; k < 4; ++k) fan.triangles.push_back({0, k, k + 1});
+    const Bracket found = bracket(triangles_of({{p, q, r}}), fan, {.enough = enough, .budget = 1000});
+    EXPECT_EQ(found.undecided, 0U) << i;
+    if (found.lower > 0.0) {
+      EXPECT_LE(std::sqrt(distance2_to_triangle(found.worst, p, q, r)), 1e-14) << i;
+    }
+  }
 }
 
 TEST(SurfaceBracket, OfFoldedSheetsHoldsDenseSamples) {
